@@ -1,0 +1,63 @@
+"""What the hand is made of and driven by: motors, transmission, motion limits, printing."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from fpcad.spec.base import NonNegative, Positive, SpecModel
+
+
+class Transmission(SpecModel):
+    """Tendon routing of one finger, the same for all."""
+
+    spool_radius_mm: Positive = 10.0
+    """Radius of the motors' spools [mm]."""
+    input_pulley_radius_mm: Annotated[float, Field(gt=0, le=12)] = 10.0
+    """Radius of the differential's two input pulleys, coaxial with flexion [mm]."""
+    output_pulley_radius_mm: Positive = 10.0
+    """Radius of the differential's output pulley, on the abduction axis [mm]."""
+    idler_radius_mm: NonNegative = 4.0
+    """Radius of the idlers that lead the IP strands across the MCP joint [mm]."""
+    ip_pulley_radius_mm: Positive = 5.0
+    """Radius of the IP joint's pulley [mm]."""
+
+
+class Motors(SpecModel):
+    """Motors, three a finger, and the way they pull."""
+
+    type: str = "STS3215-12V"
+    """Row of the motor catalogue."""
+    transmission: Transmission = Transmission()
+    """Pulleys and spools."""
+
+
+class Motion(SpecModel):
+    """Limits that trajectories are slowed to."""
+
+    tool_speed_deg_s: Positive = 30.0
+    """Largest turning speed of the tool [deg/s]."""
+    joint_speed_deg_s: Positive = 90.0
+    """Largest speed of a joint [deg/s]."""
+    joint_acceleration_deg_s2: Positive = 720.0
+    """Largest acceleration of a joint [deg/s^2]."""
+
+
+class Print(SpecModel):
+    """What the printers make, and from what."""
+
+    skin_thickness_mm: Positive = 1.5
+    """Thickness of the TPE skin [mm]."""
+    skin_oversize_mm: NonNegative = 0.0
+    """Enlargement of the skin beyond the contact surface [mm], against imprecise control."""
+    clearance_mm: Positive = 0.2
+    """Gap between parts that move against each other [mm]."""
+    bone_density_g_cm3: Positive = 1.24
+    """Density of the printed endoskeleton [g/cm^3]; PLA by default."""
+    skin_density_g_cm3: Positive = 1.12
+    """Density of the printed skin [g/cm^3]; TPE by default."""
+    mesh_tolerance_mm: Annotated[float, Field(gt=0, le=1)] = 0.05
+    """Largest chordal error of the STL files [mm]."""
+    mesh_angle_deg: Annotated[float, Field(gt=0, le=45)] = 11.5
+    """Largest angle between neighbouring facets of a curved face [deg]."""

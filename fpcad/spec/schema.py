@@ -1,0 +1,51 @@
+"""The whole spec: one frozen value that every later layer reads."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from fpcad.spec.base import Name, SpecModel
+from fpcad.spec.hand import Hand
+from fpcad.spec.hardware import Motion, Motors, Print
+from fpcad.spec.pose import Initial, Pose
+from fpcad.spec.process import Bounds, Path, Sampling, Selection, Solver, Statics
+from fpcad.spec.tool import CylinderTool
+
+
+class Spec(SpecModel):
+    """A tool, a hand template and foundational poses, and how to make a hand of them."""
+
+    fpcad: Literal[1]
+    """Version of the spec format."""
+    name: Name
+    """Name of the design; its build lies in build/NAME."""
+    description: str = ""
+    """What the design is for, in words."""
+    tool: CylinderTool
+    """The tool that the hand wields."""
+    hand: Hand
+    """The hand template and its free parameters."""
+    poses: dict[Name, Pose] = Field(min_length=1)
+    """Foundational poses by name."""
+    initial: Initial | None = None
+    """The hand to start from; without it a multi-start search finds one."""
+    statics: Statics = Statics()
+    """When a pose counts as held."""
+    bounds: Bounds = Bounds()
+    """Bounds on poses and paths."""
+    solver: Solver = Solver()
+    """How poses are solved."""
+    sampling: Sampling = Sampling()
+    """How hands are sampled."""
+    path: Path = Path()
+    """How the tool is turned."""
+    selection: Selection = Selection()
+    """How one hand is chosen."""
+    motors: Motors = Motors()
+    """What drives the joints."""
+    motion: Motion = Motion()
+    """Limits of the exported trajectories."""
+    print: Print = Print()
+    """How the parts are printed."""
