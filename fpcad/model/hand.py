@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.model.frames import Expr, Frame, rot_x, rot_y, rot_z
-from fpcad.spec.hand import Hand, PalmCapsule
+from fpcad.spec.hand import Hand, PalmCapsule, PalmSphere
+from fpcad.units import RAD_PER_DEG
 from fpcad.spec.templates import TEMPLATES, TemplateNames
 
 
@@ -19,8 +20,9 @@ class LinkShape(NamedTuple):
     axis_length: Expr  # [mm] from the proximal joint to where the cylinder ends
     radius: Expr  # [mm]
     has_tip: bool  # a hemisphere that a tool may touch lies beyond the cylinder
-    bends_at_start: bool  # the skin is cut to the bend plane at the proximal joint
-    bends_at_end: bool  # ... at the distal joint
+    bends_at_start: bool  # the skin is cut to the bend plane of the IP joint at the start
+    bends_at_end: bool  # ... at the end of the cylinder
+    hidden_start: float  # [mm] of the axis inside the palm's solid that the finger roots in
 
 
 class PalmSolid(NamedTuple):
@@ -51,12 +53,13 @@ class HandTemplate(Protocol):
         """Frame of each link in H for joint angles u (n_joints,) [rad]."""
         ...
 
-    def joint_axes(self, finger: str, d: Expr, u: Expr) -> list[tuple[Expr, Expr, tuple[str, ...]]]:
-        """Per joint: axis (3,) and a point of it (3,) [mm] in H, and the links that it moves."""
+    def link_shape(self, link: str, d: Expr) -> LinkShape:
+        """Contact capsule of a link, the same for all fingers."""
         ...
 
-    def link_shape(self, link: str, d: Expr) -> LinkShape:
-        """Contact capsule of a link."""
+    @property
+    def bend_limit(self) -> float:
+        """Largest bend [rad] of the joint between two links, to whose plane the skins are cut."""
         ...
 
     def palm(self, d: Expr) -> list[PalmSolid]:
@@ -91,21 +94,17 @@ class AnthropomorphicHand:
         ip = ca.vertcat(self.spec.finger_length_mm - d[0], 0, 0)
         return {"proximal": proximal, "distal": proximal @ Frame(rot_y(u[2]), ip)}
 
-    def joint_axes(self, finger: str, d: Expr, u: Expr) -> list[tuple[Expr, Expr, tuple[str, ...]]]:
-        root = self.root_frame(finger, d)
-        links = self.link_frames(finger, d, u)
-        both = ("proximal", "distal")
-        return [
-            (root.R[:, 1], root.p, both),
-            ((root.R @ rot_y(u[0]))[:, 2], root.p, both),
-            (links["proximal"].R[:, 1], links["distal"].p, ("distal",)),
-        ]
-
     def link_shape(self, link: str, d: Expr) -> LinkShape:
         radius = d[3] / 2
         if link == "distal":
-            return LinkShape(d[0] - radius, radius, True, True, False)
-        return LinkShape(self.spec.finger_length_mm - d[0], radius, False, False, True)
+            return LinkShape(d[0] - radius, radius, True, True, False, 0.0)
+        hidden = max((s.radius_mm for s in self.spec.palm if isinstance(s, PalmSphere)), default=0.0)
+        length = self.spec.finger_length_mm - d[0]
+        return LinkShape(length, radius, False, False, True, hidden)
+
+    @property
+    def bend_limit(self) -> float:
+        return self.spec.joint_limits_deg["ip_flex"][1] * RAD_PER_DEG
 
     def palm(self, d: Expr) -> list[PalmSolid]:
         sites = {f"{finger}_root": self.root_frame(finger, d).p for finger in self.names.fingers}
