@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
 
 
 class SpecModel(BaseModel):
@@ -15,10 +16,15 @@ class SpecModel(BaseModel):
     )
 
 
+def rejection(allowed: str, at: str | None = None) -> PydanticCustomError:
+    """The error with which a validator tells what is allowed, and at which of its keys."""
+    return PydanticCustomError("fault", "{allowed}", {"allowed": allowed, "at": at})
+
+
 def _ordered(interval: tuple[float, float]) -> tuple[float, float]:
     low, high = interval
     if low > high:
-        raise ValueError(f"a range [low, high] with low <= high, not [{low:g}, {high:g}]")
+        raise rejection("a range [low, high] with low <= high")
     return interval
 
 
@@ -28,8 +34,9 @@ Interval = Annotated[tuple[float, float], AfterValidator(_ordered)]
 Vector3 = tuple[float, float, float]
 """Three numbers along x, y, z."""
 
-Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,39}$")]
-"""A name that is also a file name: lower-case letters, digits, - and _; a letter first."""
+NAME_PATTERN = r"^[a-z][a-z0-9_-]{0,39}$"
+Name = Annotated[str, Field(pattern=NAME_PATTERN)]
+"""A name that is also a file name: up to 40 lower-case letters, digits, - and _; a letter first."""
 
 Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]

@@ -6,7 +6,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from fpcad.spec.base import Interval, Name, NonNegative, Positive, SpecModel, Vector3
+from fpcad.spec.base import (
+    Interval,
+    Name,
+    NonNegative,
+    Positive,
+    SpecModel,
+    Vector3,
+    rejection,
+)
 
 
 class ParameterRange(SpecModel):
@@ -23,9 +31,9 @@ class ParameterRange(SpecModel):
     def _range_or_value(self) -> ParameterRange:
         ranged = self.min is not None and self.max is not None
         if ranged == (self.value is not None) or (self.min is None) != (self.max is None):
-            raise ValueError("either both `min` and `max`, or `value` alone")
+            raise rejection("either both `min` and `max`, or `value` alone")
         if self.min is not None and self.max is not None and self.min >= self.max:
-            raise ValueError(f"min < max, not min = {self.min:g}, max = {self.max:g}")
+            raise rejection(f"a number greater than min = {self.min:g}", at="max")
         return self
 
     @property
@@ -78,7 +86,7 @@ class Hand(SpecModel):
     template: str
     """Kinematic template; `anthropomorphic_4f` is the only one so far."""
     finger_length_mm: Positive = 100.0
-    """Length of each finger from root to apex [mm]; the proximal link takes what the distal leaves."""
+    """Length of each finger from root to apex [mm], shared by its proximal and distal link."""
     root_gap_mm: NonNegative = 2.0
     """Least gap between two neighbouring fingers' roots [mm]; designs below it are not tried."""
     parameters: dict[str, ParameterRange]

@@ -1,4 +1,4 @@
-"""Foundational poses: which links touch the tool where, how it turns, and what makes a pose good."""
+"""Foundational poses: which links touch the tool where, how it turns, what makes a pose good."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, field_validator
 
-from fpcad.spec.base import Interval, NonNegative, SpecModel, Vector3
+from fpcad.spec.base import Interval, NonNegative, SpecModel, Vector3, rejection
 
 
 class Contact(SpecModel):
@@ -35,8 +35,8 @@ class Turning(SpecModel):
     @field_validator("axis")
     @classmethod
     def _has_direction(cls, axis: Vector3) -> Vector3:
-        if not any(axis):
-            raise ValueError("a vector that is not zero")
+        if max(map(abs, axis)) < 1e-6:
+            raise rejection("a vector with a component of at least 1e-6")
         return axis
 
 

@@ -26,7 +26,7 @@ class Bounds(SpecModel):
     hand_position_mm: Positive = 150.0
     """Largest absolute coordinate of the hand frame in O [mm]."""
     hand_rotation_deg: Positive = 229.2
-    """Largest absolute roll, pitch or yaw [deg]; more than a half turn, so that no wrap is at a bound."""
+    """Largest absolute roll, pitch or yaw [deg]; over 180, so that no wrap lies at a bound."""
     finger_angle_deg: Annotated[float, Field(gt=0, lt=180)] = 100.0
     """Largest absolute angle of a contact about its link at a pose [deg]."""
     path_finger_angle_deg: Annotated[float, Field(gt=0, lt=180)] = 120.0
@@ -62,7 +62,7 @@ class Sampling(SpecModel):
     min_distance: Fraction = 1 / 30
     """Least distance between two candidates, in standardized units."""
     batch: Annotated[int, Field(ge=1, le=4096)] = 8
-    """Proposals made from the same tree and solved side by side; part of the result's definition."""
+    """Proposals made from one tree and solved side by side; another number gives other hands."""
     efficiency_window: Annotated[int, Field(ge=1)] = 1_000
     """Number of last calls over which the sampling efficiency is averaged."""
     min_efficiency: Annotated[float, Field(ge=0, lt=1)] = 0.01
@@ -85,7 +85,7 @@ class Path(SpecModel):
     qp: Literal["daqp", "osqp"] = "daqp"
     """Solver of the rate program; `osqp` is the slower cross-check."""
     keep: Literal["all", "front", "selected"] = "front"
-    """Whose states are kept in `paths.parquet`: all candidates', the Pareto front's, the chosen one's."""
+    """Whose path states are kept: all candidates', the Pareto front's or the selected one's."""
 
 
 class Resolutions(SpecModel):

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
-from fpcad.spec.base import Name, SpecModel
+from fpcad.spec.base import Name, SpecModel, rejection
 from fpcad.spec.hand import Hand
 from fpcad.spec.hardware import Motion, Motors, Print
 from fpcad.spec.pose import Initial, Pose
@@ -49,3 +49,10 @@ class Spec(SpecModel):
     """Limits of the exported trajectories."""
     print: Print = Print()
     """How the parts are printed."""
+
+    @field_validator("fpcad", mode="before")
+    @classmethod
+    def _whole_version(cls, version: Any) -> Any:
+        if isinstance(version, (bool, float)):  # both equal 1 in Python, neither is meant
+            raise rejection("1")
+        return version

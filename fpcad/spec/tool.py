@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from fpcad.spec.base import Positive, SpecModel
+from fpcad.spec.base import Positive, SpecModel, rejection
 
 
 class CylinderTool(SpecModel):
@@ -24,5 +24,5 @@ class CylinderTool(SpecModel):
     @model_validator(mode="after")
     def _tip_lies_beyond_back(self) -> CylinderTool:
         if self.tip_mm <= self.back_mm:
-            raise ValueError(f"tip_mm greater than back_mm = {self.back_mm:g}")
+            raise rejection(f"a number greater than back_mm = {self.back_mm:g}", at="tip_mm")
         return self

@@ -1,0 +1,60 @@
+"""The motors that fpcad knows, read from data/motors.csv."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+from fpcad.errors import SpecError
+from fpcad.spec.faults import near_miss
+
+
+@dataclass(frozen=True)
+class Motor:
+    """One row of the catalogue, at its supply voltage."""
+
+    type: str
+    maker: str
+    supply_v: float
+    continuous_torque_nm: float
+    """Torque [N m] that it can hold for long; mostly an estimate, see `source`."""
+    stall_torque_nm: float
+    """Torque [N m] at which it stands still; it overheats within seconds."""
+    no_load_speed_rad_s: float
+    mass_g: float
+    source: str
+    """Data sheet of the values, and what was estimated."""
+
+
+def motor(type: str) -> Motor:
+    """The catalogue's row of a motor type; :class:`fpcad.errors.SpecError` where it has none."""
+    if type not in _rows():
+        hint = near_miss(_rows(), type)
+        raise SpecError(f'no motor "{type}"; allowed: {", ".join(_rows())}{hint}')
+    return _rows()[type]
+
+
+def motor_types() -> tuple[str, ...]:
+    """All motor types in the order of the catalogue."""
+    return tuple(_rows())
+
+
+@cache
+def _rows() -> dict[str, Motor]:
+    text = (files("fpcad") / "data" / "motors.csv").read_text(encoding="utf-8")
+    return {row["type"]: _motor(row) for row in csv.DictReader(text.splitlines())}
+
+
+def _motor(row: dict[str, str]) -> Motor:
+    return Motor(
+        type=row["type"],
+        maker=row["maker"],
+        supply_v=float(row["supply_v"]),
+        continuous_torque_nm=float(row["continuous_torque_nm"]),
+        stall_torque_nm=float(row["stall_torque_nm"]),
+        no_load_speed_rad_s=float(row["no_load_speed_rad_s"]),
+        mass_g=float(row["mass_g"]),
+        source=row["source"],
+    )
