@@ -1,0 +1,126 @@
+"""What a run tells about itself: progress, tracking error, and a table of all samples."""
+
+from __future__ import annotations
+
+import csv
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpcad.run.driver import Sample
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a run is."""
+
+    path_s: float
+    """Path time reached [s]."""
+    total_s: float
+    """Path time of the whole run [s]."""
+    knots_sent: int
+    resends: int
+    state: str
+    error_rad: float
+    """Largest tracking error of the latest sample [rad]."""
+
+
+@dataclass(frozen=True)
+class RunReport:
+    """A run that reached its end. Tuples hold one number a joint, in the order of `joint_names`."""
+
+    controller: str
+    seconds: float
+    """Path time of the run, the way to its start included [s]."""
+    knots: int
+    resends: int
+    bad_frames: int
+    samples: int
+    """Telemetry samples that the errors are taken from."""
+    joint_names: tuple[str, ...]
+    max_error_rad: tuple[float, ...]
+    """Largest |measured - commanded| of each joint [rad]."""
+    rms_error_rad: tuple[float, ...]
+    """Root mean square of the same [rad]."""
+    max_error_all_rad: float
+    """Largest over all joints [rad]."""
+    rms_error_all_rad: float
+    """Root mean square over all joints [rad]."""
+    wire_error_rad: float
+    """Largest distance between the motion in the file and the one that was sent [rad]."""
+    final_state: str
+
+
+class TrackingError:
+    """Sums up |measured - commanded| of n joints while they move."""
+
+    def __init__(self, joints: int) -> None:
+        self.samples = 0
+        self._largest = np.zeros(joints)
+        self._squares = np.zeros(joints)
+
+    def add(self, sample: Sample) -> float:
+        """Take a sample in; its largest error [rad]."""
+        error = np.abs(sample.position_rad - sample.command_rad)
+        if sample.state == "RUNNING":
+            self.samples += 1
+            self._largest = np.maximum(self._largest, error)
+            self._squares += error**2
+        return float(error.max())
+
+    @property
+    def max_rad(self) -> Array:
+        """Largest error (n,) [rad]."""
+        return self._largest
+
+    @property
+    def rms_rad(self) -> Array:
+        """Root mean square error (n,) [rad]."""
+        return np.sqrt(self._squares / max(self.samples, 1))
+
+
+class TelemetryLog:
+    """A CSV table with one row a sample; a run that fails leaves its table too."""
+
+    def __init__(self, path: Path | None, joint_names: tuple[str, ...]) -> None:
+        self._path = path
+        self._names = joint_names
+
+    def __enter__(self) -> TelemetryLog:
+        if self._path is not None:
+            self._partial = self._path.with_name(self._path.name + ".partial")
+            self._file = self._partial.open("w", newline="", encoding="utf-8")
+            self._rows = csv.writer(self._file)
+            self._rows.writerow(self._header())
+        return self
+
+    def add(self, sample: Sample) -> None:
+        """Write one row."""
+        if self._path is not None:
+            head = (sample.device_s, sample.path_s, sample.state, sample.cause)
+            counts = (sample.queued_knots, sample.bad_frames, sample.resends)
+            angles = np.concatenate([sample.position_rad, sample.command_rad]).tolist()
+            self._rows.writerow((*head, *counts, *angles))
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        if self._path is not None:
+            self._file.flush()
+            os.fsync(self._file.fileno())
+            self._file.close()
+            os.replace(self._partial, self._path)
+
+    def _header(self) -> list[str]:
+        head = ["device_s", "path_s", "state", "cause", "queued_knots", "bad_frames", "resends"]
+        positions = [f"{name}_position_rad" for name in self._names]
+        return [*head, *positions, *(f"{name}_command_rad" for name in self._names)]

@@ -1,0 +1,1 @@
+"""The simulated controller: a peer that speaks the whole protocol, and joints for it to move."""

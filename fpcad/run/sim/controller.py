@@ -1,0 +1,277 @@
+"""The controller: sessions, commands and states. Bytes and ticks go in, bytes come out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fpcad.run.codec import CLASSES, KINDS, MalformedMessage, decode, encode
+from fpcad.run.framing import PROTOCOL_VERSION, Frame, FrameReader, encode_frame
+from fpcad.run.limits import JointLimits, to_counts
+from fpcad.run.messages import (
+    Ack,
+    Arm,
+    AskLimits,
+    Cause,
+    Clear,
+    End,
+    Estop,
+    Hello,
+    Hold,
+    Knot,
+    NoSession,
+    Ping,
+    Pong,
+    Reason,
+    Refused,
+    Start,
+    State,
+    Telemetry,
+    Welcome,
+)
+from fpcad.run.sim.follower import PathFollower
+from fpcad.run.sim.plant import Plant
+from fpcad.run.sim.sequence import DONE, Sequence
+from fpcad.run.sim.states import NEXT
+
+TICK_HZ = 250
+_TELEMETRY_TICKS = 5
+_PREFILL_US = 500_000
+_START_WINDOW_US = (0, 60_000_000)
+"""How far ahead of the controller's clock a Start may lie."""
+_TRACKING_LIMIT_RAD = 0.15
+_PLANT_SUBSTEPS = 4
+
+
+@dataclass(frozen=True)
+class ControllerSetup:
+    """What is fixed in a controller's memory."""
+
+    limits: JointLimits
+    boot_nonce: int
+    buffer_knots: int = 32
+    silence_us: int = 500_000
+    """Silence of the host after which motion stops."""
+    homed: bool = True
+    protocol: int = PROTOCOL_VERSION
+    build: bytes = b"fpcad-sim"
+
+
+class Controller:
+    """The simulated counterpart of the firmware; knows neither a port nor the wall clock."""
+
+    def __init__(self, setup: ControllerSetup, plant: Plant) -> None:
+        self._setup = setup
+        self.plant = plant
+        self.follower = PathFollower(setup.limits, setup.buffer_knots, plant.position)
+        self.state = State.READY if setup.homed else State.IDLE
+        self.cause = Cause.NONE
+        self.time_us = 0
+        self._start_us = 0
+        self._heard_us = 0
+        self._session = 0
+        self._sequence = Sequence()
+        self._reader = FrameReader()
+        self._output = bytearray()
+
+    @property
+    def moving(self) -> bool:
+        """Whether the joints are being led along a path."""
+        return self.state is State.RUNNING or self.follower.rate > 0
+
+    def receive(self, data: bytes) -> None:
+        """Take bytes from the host and answer every good frame."""
+        for frame in self._reader.feed(data):
+            self._on_frame(frame)
+
+    def take_output(self) -> bytes:
+        """Bytes for the host since the last call."""
+        data = bytes(self._output)
+        self._output.clear()
+        return data
+
+    def tick(self) -> None:
+        """Advance by one period of 4 ms."""
+        self.time_us += 1_000_000 // TICK_HZ
+        if self.state is State.RUNNING and self.follower.rate == 0:
+            self._set_off_if_due()
+        self.follower.step(1 / TICK_HZ)
+        self.plant.step(
+            self.follower.command, self.follower.command_velocity, 1 / TICK_HZ, _PLANT_SUBSTEPS
+        )
+        self._supervise()
+        if self._session and self.time_us * TICK_HZ // 1_000_000 % _TELEMETRY_TICKS == 0:
+            self._send(self._telemetry())
+
+    def _set_off_if_due(self) -> None:
+        if self.time_us >= self._start_us:
+            self.follower.start()
+
+    def _supervise(self) -> None:
+        silent = self.time_us - self._heard_us > self._setup.silence_us
+        if self.state is State.ARMED and silent:
+            self.state = State.READY
+        if self.state is not State.RUNNING:
+            return
+        error = np.abs(self.plant.position - self.follower.command).max()
+        if error > _TRACKING_LIMIT_RAD:
+            self._stop(State.FAULT, Cause.TRACKING)
+        elif self.follower.arrived:
+            self.state = State.READY
+        elif silent:
+            self._stop(State.HOLD, Cause.SILENCE)
+        elif self.follower.starving:
+            self._stop(State.HOLD, Cause.UNDERRUN)
+
+    def _stop(self, state: State, cause: Cause) -> None:
+        self.state, self.cause = state, cause
+        self.follower.stop()
+
+    def _forget_path(self) -> None:
+        """Drop all knots; the joints keep the goal that they have."""
+        self.follower.rest_at(self.follower.command)
+
+    def _clear(self) -> None:
+        """Unlatch: the goal becomes where the joints are, then torque comes back."""
+        self.cause = Cause.NONE
+        self.follower.rest_at(self.plant.position)
+        self.plant.torque_on = True
+
+    def _on_frame(self, frame: Frame) -> None:
+        cls = CLASSES.get(frame.kind)
+        if cls is Hello:
+            self._on_hello(frame)
+        elif frame.version != self._setup.protocol or cls is None or frame.kind >= 0x40:
+            return
+        elif cls is Estop:
+            self._halt()
+            self._send(self._ack(), frame.session)
+        elif frame.session != self._session or not self._session:
+            self._send(NoSession(self._setup.boot_nonce), frame.session)
+        else:
+            self._heard_us = self.time_us
+            self._on_session_frame(frame, cls)
+
+    def _on_hello(self, frame: Frame) -> None:
+        if frame.session != self._session and not self.moving:
+            self._session, self._sequence = frame.session, Sequence()
+            self._heard_us = self.time_us
+            if self.state is State.ARMED:
+                self.state = State.READY
+        setup = self._setup
+        joints = len(setup.limits.names)
+        welcome = Welcome(
+            setup.protocol,
+            joints,
+            self.state,
+            self.cause,
+            TICK_HZ,
+            setup.buffer_knots,
+            setup.boot_nonce,
+            setup.limits.hash(),
+            setup.build,
+        )
+        self._send(welcome, frame.session)
+
+    def _on_session_frame(self, frame: Frame, cls: type) -> None:
+        if KINDS[cls].sequenced:
+            reply = self._sequence.take(frame, self._perform)
+            if reply is not None:
+                self._send(self._ack() if reply is DONE else reply)
+            return
+        try:
+            msg = decode(frame.kind, frame.payload)
+        except MalformedMessage:
+            self._reader.bad_frames += 1
+            return
+        if isinstance(msg, Ping):
+            self._send(Pong(msg.host_us, self.time_us))
+        elif isinstance(msg, AskLimits):
+            self._send(self._setup.limits.on_wire())
+        elif isinstance(msg, Hold):
+            if NEXT[self.state, Hold] is not self.state:
+                self._stop(State.HOLD, Cause.HOST)
+            self._send(self._ack())
+
+    def _perform(self, frame: Frame) -> Refused | None:
+        """Carry out one sequenced command, or leave everything as it is and say why."""
+        reason, joint = self._attempt(frame) or (None, 0)
+        if reason is None:
+            return None
+        return Refused(frame.seq, frame.kind, reason, joint, self.state, self.cause)
+
+    def _attempt(self, frame: Frame) -> tuple[Reason, int] | None:
+        try:
+            msg = decode(frame.kind, frame.payload)
+        except MalformedMessage:
+            return Reason.MALFORMED, 0
+        following = NEXT.get((self.state, type(msg)))
+        if following is None:
+            return Reason.WRONG_STATE, 0
+        refusal = self._act(msg)
+        if refusal is None:
+            self.state = following
+        return refusal
+
+    def _act(self, msg: Any) -> tuple[Reason, int] | None:
+        if isinstance(msg, Knot):
+            return self.follower.offer(msg, self.plant.position)
+        if isinstance(msg, Start):
+            return self._schedule(msg.device_us)
+        if isinstance(msg, End):
+            reason = self.follower.end(msg.knots)
+            return None if reason is None else (reason, 0)
+        if isinstance(msg, Arm):
+            self._forget_path()
+        if isinstance(msg, Clear):
+            if self.follower.rate > 0:
+                return Reason.STILL_MOVING, 0
+            self._clear()
+        return None
+
+    def _schedule(self, device_us: int) -> tuple[Reason, int] | None:
+        earliest, latest = _START_WINDOW_US
+        if not earliest <= device_us - self.time_us <= latest:
+            return Reason.START_TIME, 0
+        if self.follower.queued_us < _PREFILL_US and not self.follower.ended:
+            return Reason.TOO_LITTLE_PREFILL, 0
+        self._start_us = device_us
+        return None
+
+    def _halt(self) -> None:
+        """Emergency stop: torque off at once."""
+        self.state, self.cause = State.ESTOP, Cause.HOST
+        self.plant.torque_on = False
+        self.follower.rest_at(self.plant.position)
+
+    def _ack(self) -> Ack:
+        return Ack(self._sequence.expected, self.follower.free, self.state)
+
+    def _telemetry(self) -> Telemetry:
+        follower = self.follower
+        at_rest = self.plant.torque_on
+        return Telemetry(
+            self.time_us,
+            follower.path_us,
+            self.state,
+            self.cause,
+            round(1000 * follower.rate),
+            follower.queued,
+            self._reader.bad_frames & 0xFFFF,
+            to_counts(self.plant.position),
+            to_counts(follower.command if at_rest else self.plant.position),
+        )
+
+    def _send(self, msg: Any, session: int | None = None) -> None:
+        kind = KINDS[type(msg)]
+        self._output += encode_frame(
+            Frame(
+                kind.code,
+                0,
+                self._session if session is None else session,
+                encode(msg),
+                self._setup.protocol,
+            )
+        )

@@ -1,0 +1,109 @@
+"""A controller and a line in one thread with a clock of their own: faults at will, no waiting."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from fpcad.run.port import READ_WAIT_S
+from fpcad.run.sim.controller import TICK_HZ, Controller, ControllerSetup
+from fpcad.run.sim.plant import Plant
+from tests.run.fixtures import hand_limits, swing
+
+Damage = Callable[[bytes], bytes]
+
+
+def untouched(data: bytes) -> bytes:
+    return data
+
+
+def controller(**changes) -> Controller:
+    start = changes.pop("start_rad", swing().position[0])
+    setup = {"limits": hand_limits(), "boot_nonce": 7, **changes}
+    return Controller(ControllerSetup(**setup), Plant(start))
+
+
+@dataclass
+class VirtualLine:
+    """Transport and clock: reading lets time pass, and with it the controller."""
+
+    device: Controller = field(default_factory=controller)
+    to_device: Damage = untouched
+    to_host: Damage = untouched
+    baud_rate: int | None = None
+    connected: bool = True
+    now_s: float = 0.0
+    on_tick: Callable[[VirtualLine], None] | None = None
+    log: list[bytes] = field(default_factory=list)
+
+    def clock(self) -> float:
+        return self.now_s
+
+    def write(self, data: bytes) -> None:
+        self.log.append(data)
+        if self.connected:
+            self.device.receive(self.to_device(data))
+
+    def read(self) -> bytes:
+        data = self._collect()
+        if not data:
+            self.let_pass(READ_WAIT_S)
+            data = self._collect()
+        return data
+
+    def let_pass(self, seconds: float) -> None:
+        for _ in range(max(round(seconds * TICK_HZ), 1)):
+            self.now_s += 1 / TICK_HZ
+            self.device.tick()
+            if self.on_tick is not None:
+                self.on_tick(self)
+
+    def close(self) -> None:
+        self.connected = False
+
+    def _collect(self) -> bytes:
+        data = self.device.take_output()
+        return self.to_host(data) if data and self.connected else b""
+
+
+def bit_flips(rate: float, seed: int) -> Damage:
+    """Flips one bit in each byte with probability `rate`."""
+    chance = random.Random(seed)
+
+    def damage(data: bytes) -> bytes:
+        return bytes(
+            byte ^ (1 << chance.randrange(8)) if chance.random() < rate else byte for byte in data
+        )
+
+    return damage
+
+
+def lost_bytes(rate: float, seed: int) -> Damage:
+    chance = random.Random(seed)
+    return lambda data: bytes(byte for byte in data if chance.random() >= rate)
+
+
+def lost_frames(rate: float, seed: int) -> Damage:
+    """Loses, doubles or delays whole frames, each with probability `rate`."""
+    chance = random.Random(seed)
+    late: list[bytes] = []
+
+    def damage(data: bytes) -> bytes:
+        out = b""
+        for frame in data.split(b"\0")[:-1]:
+            piece = frame + b"\0"
+            fate = chance.random() / rate if rate else 9.0
+            if fate < 1:
+                continue
+            if fate < 2:
+                piece *= 2
+            elif fate < 3:
+                late.append(piece)
+                continue
+            out += piece
+            while late:
+                out += late.pop()
+        return out
+
+    return damage
