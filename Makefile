@@ -76,7 +76,7 @@ distclean: clean ## Remove .venv as well.
 	rm -rf $(VENV)
 
 $(INSTALLED): $(CREATED) $(PINS)
-	@echo "Installing fpcad's packages in $(VENV): about 2.5 GB, some minutes on the first run."
+	@echo "Installing fpcad's packages in $(VENV): about 2 GB, some minutes on the first run."
 	$(PIP_INSTALL) setuptools
 	$(INSTALL) .
 	@touch $@
