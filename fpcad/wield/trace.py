@@ -52,14 +52,15 @@ class Trace:
     end: End
 
 
-def trace(m: Mechanism, load: Load, x: Array, direction: float, stepping: Stepping) -> Trace | None:
-    """Turn the tool from the pose's state x until the path ends; None if the pose is not held.
+def trace(m: Mechanism, load: Load, x: Array, direction: float, stepping: Stepping) -> Trace:
+    """Turn the tool from the pose's state x until the path ends.
 
-    The last step is bisected until its length is known to `stepping.end_tolerance`.
+    The last step is bisected until its length is known to `stepping.end_tolerance`. A pose that is
+    not even held itself has that one state, with infinite torque.
     """
     start = _hold(m, load, 0.0, Step(x, np.zeros(1)), direction)
     if start is None:
-        return None
+        return Trace([PathState(0.0, x, np.inf, 0.0, 0.0)], End.STATICS)
     states, end = [start], End.COMPLETE
     while (left := stepping.max_turn - abs(states[-1].turn)) > 1e-9:
         length = min(stepping.step, left)

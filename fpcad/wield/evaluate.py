@@ -1,0 +1,83 @@
+"""Evaluating a candidate: its paths from all poses, and their metrics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpcad.model.pose import HAND_SIZE
+from fpcad.model.transmission import hand_transmission
+from fpcad.solve.attempt import Workbench
+from fpcad.solve.program import path_bounds
+from fpcad.solve.qp import BACKENDS
+from fpcad.spec.catalogue import motor
+from fpcad.spec.schema import Spec
+from fpcad.units import NM_PER_NMM, RAD_PER_DEG
+from fpcad.wield.metrics import PathMetrics, path_metrics
+from fpcad.wield.path import WieldingPath, join_traces
+from fpcad.wield.rates import Mechanism
+from fpcad.wield.trace import Load, Stepping, trace
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Paths and metrics of one candidate, by pose."""
+
+    paths: dict[str, WieldingPath]
+    metrics: dict[str, PathMetrics]
+
+
+def evaluate(bench: Workbench, design: Array, states: Mapping[str, Array]) -> Evaluation:
+    """Trace and measure the paths of a hand.
+
+    Args:
+        design: (n_d,) [mm, rad].
+        states: state y of each pose, in contact.
+    """
+    paths, metrics = {}, {}
+    for pose, y in states.items():
+        mechanism = build_mechanism(bench, pose, design, y)
+        load, stepping = build_load(bench.spec, pose), build_stepping(bench.spec)
+        minus, plus = (
+            trace(mechanism, load, y[HAND_SIZE:], direction, stepping) for direction in (-1.0, 1.0)
+        )
+        layout = bench.kernels[pose].layout
+        path = join_traces(pose, layout, y[:HAND_SIZE], minus, plus)
+        paths[pose] = path
+        metrics[pose] = path_metrics(path, minus, plus, stepping.step)
+    return Evaluation(paths, metrics)
+
+
+def build_mechanism(bench: Workbench, pose: str, design: Array, y: Array) -> Mechanism:
+    """The mechanism that tool and hand form at a pose with state y."""
+    settings, kernels = bench.spec.path, bench.kernels[pose]
+    bounds = path_bounds(bench.spec, pose, kernels.layout)
+    hand, qp = y[:HAND_SIZE], BACKENDS[settings.qp]
+    return Mechanism(kernels, bounds, design, hand, settings.rate_weight, qp)
+
+
+def build_load(spec: Spec, pose: str) -> Load:
+    """Tip force, torque cap and motors of a pose."""
+    A = hand_transmission(spec)
+    limit = motor(spec.motors.type).continuous_torque_nm / NM_PER_NMM
+    return Load(
+        tip_force_n=spec.poses[pose].tip_force_n,
+        max_joint_torque_nmm=spec.statics.max_joint_torque_nmm,
+        motor_per_joint_torque=np.linalg.inv(A.T),
+        motor_torque_nmm=np.full(len(A), limit),
+    )
+
+
+def build_stepping(spec: Spec) -> Stepping:
+    """Step lengths of a spec's paths [rad]."""
+    path = spec.path
+    return Stepping(
+        path.step_deg * RAD_PER_DEG,
+        path.end_tolerance_deg * RAD_PER_DEG,
+        path.max_turn_deg * RAD_PER_DEG,
+    )
