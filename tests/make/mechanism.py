@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -26,12 +25,10 @@ CLAY = Path(__file__).parents[2] / "designs" / "clay.yaml"
 
 @dataclass(frozen=True)
 class Mechanism:
-    """The hand that `clay` starts from, in one of its poses, with joint limits of our choice."""
+    """The hand that `clay` starts from, in one of its poses."""
 
     spec: Spec
     pose: str
-    tightened: dict[int, tuple[float, float]]
-    """Limits [rad] by joint number that replace the spec's."""
 
     @cached_property
     def geometry(self) -> HandGeometry:
@@ -60,10 +57,7 @@ class Mechanism:
     def limits(self) -> Array:
         """(2, 12) [rad]."""
         one = [self.spec.hand.joint_limits_deg[j] for j in ("mcp_flex", "mcp_abd", "ip_flex")]
-        limits = np.tile(np.radians(one).T, 4)
-        for joint, bounds in self.tightened.items():
-            limits[:, joint] = bounds
-        return limits
+        return np.tile(np.radians(one).T, 4)
 
     def project(self, tool_angle: float, guess: Array) -> Array:
         """Nearest joints (12,) [rad] in contact and within limits: Newton with an active set."""
@@ -115,9 +109,9 @@ class Mechanism:
         return gaps[0], (gaps[1:13] - gaps[13:]).T / 2e-5
 
 
-def mechanism(
-    pose: str, tightened: Callable[[Array], dict[int, tuple[float, float]]] | None = None
-):
-    """A pose of clay; `tightened` may choose limits by joint number from the free posture."""
-    free = Mechanism(load_spec(CLAY), pose, {})
-    return free if tightened is None else Mechanism(free.spec, pose, tightened(free.posture))
+def mechanism(pose: str, **joint_limits_deg: tuple[float, float]) -> Mechanism:
+    """A pose of clay, with other joint limits where they are given [deg]."""
+    spec = load_spec(CLAY)
+    limits = {**spec.hand.joint_limits_deg, **joint_limits_deg}
+    hand = spec.hand.model_copy(update={"joint_limits_deg": limits})
+    return Mechanism(spec.model_copy(update={"hand": hand}), pose)
