@@ -23,7 +23,7 @@ def check_initial(parts: Parts, names: TemplateNames) -> Iterator[Finding]:
         return
     yield from _check_design(parts, names)
     poses = parts.keys(("poses",))
-    if poses is None:
+    if not poses:
         return
     root = ("initial", "poses")
     if all(re.fullmatch(NAME_PATTERN, pose) for pose in poses):  # else told at the pose

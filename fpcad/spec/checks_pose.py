@@ -55,8 +55,8 @@ def _check_windows_on_tool(parts: Parts, pose: KeyPath, tool: CylinderTool) -> I
 
 def _check_cost(parts: Parts, pose: KeyPath, names: TemplateNames) -> Iterator[Finding]:
     contacts = [contact for _, contact in parts.items((*pose, "contacts"), Contact)]
-    whole = bool(contacts) and None not in contacts
     touching = list(dict.fromkeys(c.finger for c in contacts if c is not None))
+    whole = bool(contacts) and None not in contacts and set(touching) <= set(names.fingers)
     for path, term in parts.items((*pose, "cost"), COST_TERM):
         if term is None:
             continue

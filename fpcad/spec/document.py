@@ -26,16 +26,13 @@ from ruamel.yaml.nodes import ScalarNode
 from ruamel.yaml.resolver import VersionedResolver
 
 from fpcad.spec.faults import Fault, KeyPath, key_text, quoted
+from fpcad.spec.scalars import Scalar, scalar_value
 from fpcad.spec.syntax import syntax_fault
 
 MAX_DEPTH = 30
 """Deepest nesting of lists and mappings; a spec needs less than ten."""
 MAX_VALUES = 20_000
 """Most values of a file, aliases counted as often as they are used."""
-MAX_DIGITS = 40
-"""Longest number; a double needs 17 digits."""
-
-Scalar = str | int | float | bool | None
 
 
 class Mark(NamedTuple):
@@ -169,7 +166,7 @@ class _Builder:
         if len(path) > MAX_DEPTH:
             raise _FormError(mark, (), "nesting too deep to be a spec", f"{MAX_DEPTH} levels")
         if isinstance(event, AliasEvent):
-            return self._counted(self._alias(event, path), path)
+            return self._counted(self._alias(event, path), mark, path)
         if event.tag is not None:
             tag = quoted(str(event.tag).replace("tag:yaml.org,2002:", "!!"))
             self._fault(mark, path, f"the tag {tag}", "values without tags")
@@ -178,7 +175,7 @@ class _Builder:
         elif isinstance(event, SequenceStartEvent):
             node = self._sequence(mark, path)
         else:
-            node = self._counted(self._scalar(event, path), path)
+            node = self._counted(self._scalar(event, path), mark, path)
         if event.anchor is not None:
             self._anchors[str(event.anchor)] = node
         return node
@@ -190,11 +187,11 @@ class _Builder:
             raise _FormError(_mark(event), path, found, "an alias of an anchor that stands before")
         return Node(node.mark, node.value, node.text, node.size)
 
-    def _counted(self, node: Node, path: KeyPath) -> Node:
+    def _counted(self, node: Node, mark: Mark, path: KeyPath) -> Node:
         self._count += node.size
         if self._count > MAX_VALUES:
             found = f"more than {MAX_VALUES} values, repeated ones counted"
-            raise _FormError(node.mark, path, found, f"at most {MAX_VALUES}")
+            raise _FormError(mark, path, found, f"at most {MAX_VALUES}")
         return node
 
     def _sequence(self, mark: Mark, path: KeyPath) -> Node:
@@ -214,49 +211,30 @@ class _Builder:
                 allowed = f"each key once (first in line {first.line})"
                 self._fault(_mark(event), (*path, key), found, allowed)
             elif key is not None:
+                if node.value is None and not node.text:  # nothing there: the key is the place
+                    node.mark = _mark(event)
                 entries[key] = Entry(_mark(event), node)
         return Node(mark, entries, size=1 + sum(entry.node.size for entry in entries.values()))
 
     def _key(self, event: Any, path: KeyPath) -> str | None:
-        if isinstance(event, ScalarEvent):
-            key = self._scalar(event, path)
-            if isinstance(key.value, str):
-                return key.value
-            found = f"{key.text or 'nothing'} as a key"
-        else:
-            key, found = self._node(event, path), "a list, mapping or alias as a key"
-        self._fault(key.mark, path, found, "a name as a key")
+        if not isinstance(event, ScalarEvent):
+            found = "a list, a mapping or an alias as a key"
+            raise _FormError(_mark(event), path, found, "a name as a key")
+        key = self._scalar(event, path)
+        if isinstance(key.value, str):
+            return key.value
+        self._fault(key.mark, path, f"{key.text or 'nothing'} as a key", "a name as a key")
         return None
 
     def _scalar(self, event: Any, path: KeyPath) -> Node:
         mark, text = _mark(event), event.value
         tag = str(self._resolver.resolve(ScalarNode, text, event.implicit)).rpartition(":")[2]
-        if tag in ("int", "float") and len(text) > MAX_DIGITS:
-            found, allowed = f"a number of {len(text)} characters", f"at most {MAX_DIGITS}"
-            self._fault(mark, path, found, f"a number of {allowed} characters")
-            return Node(mark, 0, text)
         if tag == "str" and any("\ud800" <= c <= "\udfff" for c in text):
             self._fault(mark, path, quoted(text), "text in Unicode without surrogates")
             return Node(mark, "", text)
-        return Node(mark, _scalar_value(tag, text), text)
+        return Node(mark, scalar_value(tag, text), text)
 
     def _fault(self, mark: Mark, path: KeyPath, found: str, allowed: str) -> None:
         self._document.faults.append(
             Fault(self._document.file, *mark, key_text(path), found, allowed)
         )
-
-
-def _scalar_value(tag: str, text: str) -> Scalar:
-    """A plain scalar by its YAML 1.2 type; dates and merge keys are just text to us."""
-    if tag == "int":
-        digits = text.replace("_", "").lower()
-        based = digits.lstrip("+-")[:2] in ("0x", "0o", "0b")
-        return int(digits, 0 if based else 10)
-    if tag == "float":
-        words = {".inf": "inf", ".nan": "nan"}
-        number = text.replace("_", "").lower()
-        sign, bare = ("-", number[1:]) if number[0] == "-" else ("", number.lstrip("+"))
-        return float(sign + words.get(bare, bare))
-    if tag == "bool":
-        return text.lower() == "true"
-    return None if tag == "null" else text

@@ -15,6 +15,7 @@ from fpcad.spec.base import (
     Vector3,
     rejection,
 )
+from fpcad.spec.templates import SiteName, TemplateName
 
 
 class ParameterRange(SpecModel):
@@ -46,7 +47,7 @@ class ParameterRange(SpecModel):
 
 
 class PalmCapsule(SpecModel):
-    """A capsule of the palm between two sites (or the mean point of several)."""
+    """A capsule of the palm between two sites."""
 
     kind: Literal["capsule"]
     """Primitive: `capsule` or `sphere`."""
@@ -54,9 +55,9 @@ class PalmCapsule(SpecModel):
     """Name of the primitive in reports and in the URDF."""
     radius_mm: Positive
     """Radius [mm]."""
-    start: str
+    start: SiteName
     """Site at one end of the axis."""
-    end: str
+    end: SiteName
     """Site at the other end of the axis."""
     offset_mm: Vector3 = (0.0, 0.0, 0.0)
     """Shift of the whole primitive in the hand frame H [mm]."""
@@ -71,7 +72,7 @@ class PalmSphere(SpecModel):
     """Name of the primitive in reports and in the URDF."""
     radius_mm: Positive
     """Radius [mm]."""
-    at: str
+    at: SiteName
     """Site at the centre."""
     offset_mm: Vector3 = (0.0, 0.0, 0.0)
     """Shift of the centre in the hand frame H [mm]."""
@@ -83,7 +84,7 @@ PalmPrimitive = Annotated[PalmCapsule | PalmSphere, Field(discriminator="kind")]
 class Hand(SpecModel):
     """Hand template with everything that it leaves open."""
 
-    template: str
+    template: TemplateName
     """Kinematic template; `anthropomorphic_4f` is the only one so far."""
     finger_length_mm: Positive = 100.0
     """Length of each finger from root to apex [mm], shared by its proximal and distal link."""

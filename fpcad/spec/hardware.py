@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from fpcad.spec.base import NonNegative, Positive, SpecModel
+from fpcad.spec.catalogue import motor_types
 
 
 class Transmission(SpecModel):
@@ -27,7 +28,7 @@ class Transmission(SpecModel):
 class Motors(SpecModel):
     """Motors, three a finger, and the way they pull."""
 
-    type: str = "STS3215-12V"
+    type: Annotated[str, Field(json_schema_extra={"enum": [*motor_types()]})] = "STS3215-12V"
     """Row of the motor catalogue."""
     transmission: Transmission = Transmission()
     """Pulleys and spools."""

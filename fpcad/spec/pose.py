@@ -7,14 +7,15 @@ from typing import Annotated, Literal
 from pydantic import Field, field_validator
 
 from fpcad.spec.base import Interval, NonNegative, SpecModel, Vector3, rejection
+from fpcad.spec.templates import FingerName, JointName, LinkName
 
 
 class Contact(SpecModel):
     """One finger's contact with the tool and the window it must lie in at the pose."""
 
-    finger: str
+    finger: FingerName
     """Finger that touches."""
-    link: str = "distal"
+    link: LinkName = "distal"
     """Link of the finger that touches: `distal` or `proximal`."""
     axial_mm: Interval
     """Window along the tool's axis, in O [mm]."""
@@ -45,7 +46,7 @@ class TurningNormals(SpecModel):
 
     term: Literal["turning_normals"]
     """Kind of cost."""
-    fingers: tuple[str, ...] = Field(min_length=1)
+    fingers: tuple[FingerName, ...] = Field(min_length=1)
     """Fingers whose contact forces should act in the turning direction."""
     weight: NonNegative = 1.0
     """Factor of the term."""
@@ -56,7 +57,7 @@ class OpposedNormals(SpecModel):
 
     term: Literal["opposed_normals"]
     """Kind of cost."""
-    fingers: tuple[str, str]
+    fingers: tuple[FingerName, FingerName]
     """The two fingers that pinch."""
     weight: NonNegative = 1.0
     """Factor of the term."""
@@ -67,7 +68,7 @@ class JointUse(SpecModel):
 
     term: Literal["joint_use"]
     """Kind of cost."""
-    joint: str
+    joint: JointName
     """Joint whose use is discouraged."""
     weight: NonNegative = 0.1
     """Factor of the term."""
@@ -96,7 +97,7 @@ class Pose(SpecModel):
 class InitialContact(SpecModel):
     """Contact coordinates of a known pose, in the order of the pose's contacts."""
 
-    finger: str
+    finger: FingerName
     """Finger that touches."""
     axial_mm: float
     """Position along the tool's axis [mm]."""

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+from pydantic.config import JsonDict
 
 
 @dataclass(frozen=True)
@@ -36,3 +40,16 @@ TEMPLATES: dict[str, TemplateNames] = {
         ),
     ),
 }
+
+
+def _names(kind: str) -> JsonDict:
+    """Names of all templates for editors and docs; that one fits its template is checked later."""
+    known = [name for template in TEMPLATES.values() for name in getattr(template, kind)]
+    return {"enum": [*dict.fromkeys(known)]}
+
+
+TemplateName = Annotated[str, Field(json_schema_extra={"enum": [*TEMPLATES]})]
+FingerName = Annotated[str, Field(json_schema_extra=_names("fingers"))]
+JointName = Annotated[str, Field(json_schema_extra=_names("joints"))]
+LinkName = Annotated[str, Field(json_schema_extra=_names("links"))]
+SiteName = Annotated[str, Field(json_schema_extra=_names("sites"))]

@@ -25,10 +25,8 @@ def found_text(node: Node) -> str:
         return quoted(node.text)
     if node.value is None and not node.text:
         return "nothing"
-    if isinstance(node.value, (dict, list)):
-        text = _inline(node)
-        return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
-    return node.text
+    text = _inline(node) if isinstance(node.value, (dict, list)) else node.text
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 
 def _inline(node: Node, room: int = _LONGEST) -> str:
@@ -99,8 +97,7 @@ def _array(schema: Schema) -> str:
         )
     if len(items) == 2 and items[0].get("type") == "number":
         return "a range [low, high] of two numbers"
-    words = {"number": "numbers", "string": "names"}[items[0]["type"]]
-    return f"a list of {len(items)} {words}"
+    return f"a list of {len(items)} {'numbers' if items[0]['type'] == 'number' else 'names'}"
 
 
 def _object(schema: Schema) -> str:
