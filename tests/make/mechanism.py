@@ -92,6 +92,8 @@ class Mechanism:
             tool_angle_rad=np.array(angles)[order],
             joints_rad=np.array(states)[order].reshape(-1, 4, 3),
             contacts=np.zeros((len(angles), len(self.grip.contacts), 4)),
+            torque_nmm=np.zeros(len(angles)),
+            tip_force_n=np.zeros(len(angles)),
             hand_in_tool=self.hand_in_tool,
             end_minus="max_turn",
             end_plus="max_turn",
