@@ -1,0 +1,1 @@
+"""The printed parts of a hand, one concept a file."""

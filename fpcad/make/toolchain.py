@@ -1,0 +1,69 @@
+"""The heavy libraries, imported on first use, after a check of the system libraries they need."""
+
+from __future__ import annotations
+
+import ctypes
+from types import ModuleType
+
+from fpcad.errors import ToolchainError
+
+SystemLibrary = tuple[str, str]
+"""A shared library's name and the Debian package that holds it."""
+
+CAD_LIBRARIES: tuple[SystemLibrary, ...] = (
+    ("libGL.so.1", "libgl1"),
+    ("libX11.so.6", "libx11-6"),
+    ("libexpat.so.1", "libexpat1"),
+)
+"""What the wheels of cadquery's kernel are linked to but do not bring along."""
+
+OFFSCREEN_LIBRARIES: tuple[SystemLibrary, ...] = (
+    ("libEGL.so.1", "libegl1"),
+    ("libOSMesa.so.8", "libosmesa6"),
+)
+"""Either lets VTK draw without a screen; VTK opens them at run time."""
+
+
+def cadquery() -> ModuleType:
+    """The cadquery module; takes seconds and 0.5 GB the first time."""
+    _require_all("cadquery", CAD_LIBRARIES)
+    import cadquery
+
+    return cadquery
+
+
+def pyvista() -> ModuleType:
+    """The pyvista module, ready to draw without a screen."""
+    _require_one("drawing without a screen", OFFSCREEN_LIBRARIES)
+    import pyvista
+
+    return pyvista
+
+
+def _require_all(user: str, libraries: tuple[SystemLibrary, ...]) -> None:
+    missing = [(library, package) for library, package in libraries if not _loads(library)]
+    if missing:
+        names = ", ".join(library for library, _ in missing)
+        packages = " ".join(package for _, package in missing)
+        noun, it = ("library", "it") if len(missing) == 1 else ("libraries", "them")
+        raise ToolchainError(
+            f"{user} needs the system {noun} {names}: install {it} with "
+            f"`apt-get install {packages}`"
+        )
+
+
+def _require_one(user: str, libraries: tuple[SystemLibrary, ...]) -> None:
+    if not any(_loads(library) for library, _ in libraries):
+        names = " or ".join(library for library, _ in libraries)
+        raise ToolchainError(
+            f"{user} needs the system library {names}: install it with "
+            f"`apt-get install {libraries[0][1]}`"
+        )
+
+
+def _loads(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
