@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import manifold3d
 import numpy as np
 import trimesh
+from trimesh.exchange.stl import export_stl
 
 from fpcad.errors import FpcadError
 from fpcad.make.parts.solids import Solid
@@ -43,7 +44,7 @@ def in_metres(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
 
 def stl_bytes(mesh: trimesh.Trimesh) -> bytes:
     """Binary STL; equal meshes give equal bytes."""
-    return bytes(trimesh.exchange.stl.export_stl(mesh))
+    return bytes(export_stl(mesh))
 
 
 def common_volume_mm3(a: trimesh.Trimesh, b: trimesh.Trimesh) -> float:

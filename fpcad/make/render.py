@@ -43,7 +43,7 @@ class View:
     up: tuple[float, float, float] = (0.0, 0.0, 1.0)
     size: tuple[int, int] = (1280, 960)
     """Width and height [pixels]."""
-    zoom: float = 1.3
+    zoom: float = 1.15
 
 
 def render_hand(
@@ -78,7 +78,7 @@ def render_hand(
 def _add_hand(plotter: Any, pv: Any, urdf: Path, joints_rad: Mapping[str, float]) -> None:
     robot = yourdfpy.URDF.load(str(urdf), load_meshes=False, build_scene_graph=True)
     robot.update_cfg({name: joints_rad.get(name, 0.0) for name in robot.actuated_joint_names})
-    colours = {material.name: material.color.rgba for material in robot.robot.materials}
+    colours = {m.name: m.color.rgba for m in robot.robot.materials if m.color is not None}
     for name, link in robot.link_map.items():
         pose = robot.get_transform(name, BASE_LINK)
         for visual in link.visuals:
@@ -105,6 +105,7 @@ def _add(plotter: Any, mesh: Any, colour: Any, specular: float) -> None:
         smooth_shading=True,
         split_sharp_edges=True,
         feature_angle=SHARP_EDGE_DEG,
+        ambient=0.15,
         specular=specular,
         specular_power=20,
     )

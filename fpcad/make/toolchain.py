@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from types import ModuleType
 
 from fpcad.errors import ToolchainError
@@ -17,11 +18,11 @@ CAD_LIBRARIES: tuple[SystemLibrary, ...] = (
 )
 """What the wheels of cadquery's kernel are linked to but do not bring along."""
 
-OFFSCREEN_LIBRARIES: tuple[SystemLibrary, ...] = (
-    ("libEGL.so.1", "libegl1"),
-    ("libOSMesa.so.8", "libosmesa6"),
+OFFSCREEN_WINDOWS: tuple[tuple[SystemLibrary, str], ...] = (
+    (("libEGL.so.1", "libegl1"), "vtkEGLRenderWindow"),
+    (("libOSMesa.so.8", "libosmesa6"), "vtkOSOpenGLRenderWindow"),
 )
-"""Either lets VTK draw without a screen; VTK opens them at run time."""
+"""What lets VTK draw without a screen, best first, and the window class that uses it."""
 
 
 def cadquery() -> ModuleType:
@@ -34,7 +35,8 @@ def cadquery() -> ModuleType:
 
 def pyvista() -> ModuleType:
     """The pyvista module, ready to draw without a screen."""
-    _require_one("drawing without a screen", OFFSCREEN_LIBRARIES)
+    window = _offscreen_window()
+    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", window)  # else VTK tries the X server first
     import pyvista
 
     return pyvista
@@ -52,13 +54,15 @@ def _require_all(user: str, libraries: tuple[SystemLibrary, ...]) -> None:
         )
 
 
-def _require_one(user: str, libraries: tuple[SystemLibrary, ...]) -> None:
-    if not any(_loads(library) for library, _ in libraries):
-        names = " or ".join(library for library, _ in libraries)
-        raise ToolchainError(
-            f"{user} needs the system library {names}: install it with "
-            f"`apt-get install {libraries[0][1]}`"
-        )
+def _offscreen_window() -> str:
+    for (library, _), window in OFFSCREEN_WINDOWS:
+        if _loads(library):
+            return window
+    names = " or ".join(library for (library, _), _ in OFFSCREEN_WINDOWS)
+    raise ToolchainError(
+        f"drawing without a screen needs the system library {names}: install it with "
+        f"`apt-get install {OFFSCREEN_WINDOWS[0][0][1]}`"
+    )
 
 
 def _loads(library: str) -> bool:

@@ -20,12 +20,13 @@ def finger_transmission(routing: Transmission) -> Array:
     kappa = routing.output_pulley_radius_mm / routing.input_pulley_radius_mm
     crossing = routing.idler_radius_mm / routing.spool_radius_mm
     rho_ip = routing.ip_pulley_radius_mm / routing.spool_radius_mm
-    return np.array([[rho, rho * kappa, 0.0], [rho, -rho * kappa, 0.0], [crossing, 0.0, rho_ip]])
+    rows = [[rho, rho * kappa, 0.0], [rho, -rho * kappa, 0.0], [crossing, 0.0, rho_ip]]
+    return np.array(rows, dtype=np.float64)
 
 
 def hand_transmission(routing: Transmission, n_fingers: int) -> Array:
     """Matrix A (3 n, 3 n) [-] of a hand of n fingers alike, finger by finger."""
-    return np.kron(np.eye(n_fingers), finger_transmission(routing))
+    return np.kron(np.eye(n_fingers), finger_transmission(routing)).astype(np.float64)
 
 
 def motor_angles(A: Array, joints: Array) -> Array:
@@ -40,7 +41,7 @@ def joint_torques(A: Array, motor_torques: Array) -> Array:
 
 def motor_torques(A: Array, joint_torques: Array) -> Array:
     """Motor torques (..., n) that hold joint torques (..., n), in the same unit."""
-    return np.linalg.solve(A.T, joint_torques[..., None])[..., 0]
+    return np.asarray(np.linalg.solve(A.T, joint_torques[..., None])[..., 0], dtype=np.float64)
 
 
 def single_axis_torque_limits(A: Array, motor_torque: float) -> Array:

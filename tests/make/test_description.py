@@ -1,0 +1,145 @@
+"""The URDF says what the model says, to any reader."""
+
+from __future__ import annotations
+
+import itertools
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pinocchio
+import pytest
+import trimesh
+import yourdfpy
+from scipy.spatial.transform import Rotation
+
+from fpcad.make.description import urdf_text
+from fpcad.make.hand import joint_drives, link_bodies, make_hand
+from fpcad.make.inertia import inertia_of
+from fpcad.make.primitives import pose_along, roll_pitch_yaw
+from fpcad.model.geometry import link_poses
+from fpcad.spec.catalogue import motor
+from tests.make.hands import CENTRE, CLAY, CORNERS, TEMPLATE, design, geometry_of
+
+NAMES = TEMPLATE.names
+JOINTS = [f"{finger}_{joint}" for finger in NAMES.fingers for joint in NAMES.joints]
+
+
+def random_joints(seed: int) -> np.ndarray:
+    limits = np.deg2rad([CLAY.hand.joint_limits_deg[joint] for joint in NAMES.joints])
+    random = np.random.default_rng(seed)
+    return random.uniform(limits[:, 0], limits[:, 1], (len(NAMES.fingers), len(NAMES.joints)))
+
+
+def model_poses_m(values: tuple[float, ...], joints: np.ndarray) -> dict[str, np.ndarray]:
+    poses = {}
+    for finger, links in link_poses(TEMPLATE, design(values), joints).items():
+        for link, pose in links.items():
+            poses[f"{finger}_{link}"] = pose.copy()
+            poses[f"{finger}_{link}"][:3, 3] *= 1e-3
+    return poses
+
+
+def urdf_file(clay_hand):
+    return clay_hand / "hand" / "urdf" / "clay.urdf"
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_yourdfpy_finds_the_models_links(clay_hand, seed):
+    joints = random_joints(seed)
+    robot = yourdfpy.URDF.load(str(urdf_file(clay_hand)))
+    robot.update_cfg(dict(zip(JOINTS, joints.reshape(-1), strict=True)))
+    for link, pose in model_poses_m(CENTRE, joints).items():
+        assert np.abs(robot.get_transform(link, "palm") - pose).max() <= 1e-9
+
+
+def pinocchio_error(text: str, values: tuple[float, ...], joints: np.ndarray) -> float:
+    model = pinocchio.buildModelFromXML(text)
+    data = model.createData()
+    q = np.zeros(model.nq)
+    for name, angle in zip(JOINTS, joints.reshape(-1), strict=True):
+        q[model.joints[model.getJointId(name)].idx_q] = angle
+    pinocchio.framesForwardKinematics(model, data, q)
+    return max(
+        np.abs(data.oMf[model.getFrameId(link)].homogeneous - pose).max()
+        for link, pose in model_poses_m(values, joints).items()
+    )
+
+
+@pytest.mark.parametrize("values", [CENTRE, *CORNERS, (42.5, 85, 30, 16, 90, 45)], ids=str)
+def test_pinocchio_finds_the_models_links(clay_parts, values):
+    bodies = link_bodies(CLAY, list(clay_parts.values()))
+    drives = joint_drives(CLAY, motor(CLAY.motors.type))
+    text = urdf_text(CLAY, geometry_of(values), bodies, drives)
+    for seed in range(5):
+        assert pinocchio_error(text, values, random_joints(seed)) <= 1e-9
+
+
+def test_limits_are_the_specs_and_the_motors(clay_hand):
+    row = motor(CLAY.motors.type)
+    robot = yourdfpy.URDF.load(str(urdf_file(clay_hand)), load_meshes=False)
+    for name, torque in (("mcp_flex", 2.0), ("mcp_abd", 2.0), ("ip_flex", 0.5)):
+        limit = robot.joint_map[f"ring_{name}"].limit
+        assert np.rad2deg([limit.lower, limit.upper]) == pytest.approx(
+            CLAY.hand.joint_limits_deg[name]
+        )
+        assert limit.effort == pytest.approx(torque * row.continuous_torque_nm)
+    assert limit.velocity == pytest.approx(2.0 * row.no_load_speed_rad_s)
+
+
+def test_inertias_belong_to_real_bodies(clay_hand):
+    for link in yourdfpy.URDF.load(str(urdf_file(clay_hand)), load_meshes=False).robot.links:
+        moments = np.linalg.eigvalsh(link.inertial.inertia)
+        assert link.inertial.mass > 0 and moments[0] > 0
+        assert moments[2] < moments[0] + moments[1]
+
+
+def test_inertia_of_two_halves_is_that_of_the_whole():
+    whole = trimesh.creation.box((30, 20, 10))
+    halves = [trimesh.creation.box((15, 20, 10)).apply_translation((x, 0, 0)) for x in (-7.5, 7.5)]
+    found = inertia_of((half, 1.2) for half in halves)
+    mass = 30 * 20 * 10 * 1.2e-6
+    expected = mass / 12 * np.array([20**2 + 10**2, 30**2 + 10**2, 30**2 + 20**2]) * 1e-6
+    assert found.mass_kg == pytest.approx(mass)
+    assert np.allclose(found.tensor_kgm2, np.diag(expected), rtol=1e-9, atol=1e-18)
+    assert np.allclose(found.tensor_kgm2, inertia_of([(whole, 1.2)]).tensor_kgm2, atol=1e-18)
+
+
+def test_collision_shapes_are_primitives(clay_hand):
+    robot = ET.parse(urdf_file(clay_hand)).getroot()
+    shapes = {
+        link.get("name"): [shape.tag for shape in link.findall("collision/geometry/*")]
+        for link in robot.findall("link")
+    }
+    assert sorted(shapes["palm"]) == ["cylinder"] * 2 + ["sphere"] * 8
+    for finger, link in itertools.product(NAMES.fingers, NAMES.links):
+        assert sorted(shapes[f"{finger}_{link}"]) == ["cylinder", "sphere", "sphere"]
+
+
+def test_meshes_lie_where_the_urdf_says(clay_hand):
+    urdf = urdf_file(clay_hand)
+    for mesh in ET.parse(urdf).getroot().iter("mesh"):
+        visual = trimesh.load_mesh(urdf.parent / mesh.get("filename"))
+        assert visual.is_watertight and 0.005 < visual.extents.max() < 0.3
+
+
+def test_the_same_input_gives_the_same_bytes(clay_hand, tmp_path):
+    files = make_hand(CLAY, geometry_of(CENTRE), tmp_path)
+    names = sorted(file.relative_to(tmp_path) for file in files)
+    assert names == sorted(f.relative_to(clay_hand) for f in clay_hand.rglob("*") if f.is_file())
+    for name in names:
+        assert (tmp_path / name).read_bytes() == (clay_hand / name).read_bytes(), name
+
+
+@pytest.mark.parametrize("pitch", [-90, -89.9999999, 0, 30, 89.99999, 90, 120])
+def test_angles_give_the_rotation_back(pitch):
+    roll, yaw = 0.7, -2.1
+    R = Rotation.from_euler("ZYX", [yaw, np.deg2rad(pitch), roll]).as_matrix()
+    angles = roll_pitch_yaw(R)
+    assert np.allclose(Rotation.from_euler("xyz", angles).as_matrix(), R, atol=1e-12)
+
+
+def test_pose_along_points_its_z():
+    axis = np.array([0.6, 0.0, -0.8])
+    pose = pose_along(np.zeros(3), axis)
+    assert np.allclose(pose[:3, 2], axis)
+    assert np.isclose(np.linalg.det(pose[:3, :3]), 1.0)

@@ -1,0 +1,148 @@
+"""Parts are printable solids of the right size."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import trimesh
+
+from fpcad.errors import FpcadError
+from fpcad.make.mesh import mesh_of
+from fpcad.make.parts.dimensions import finger_dimensions
+from fpcad.make.parts.skin import distal_skin
+from fpcad.make.parts.solids import ball
+from tests.make.hands import CENTRE, CLAY, CORNERS, geometry_of, parts_of, with_print
+
+DIMENSIONS = finger_dimensions(CLAY, geometry_of(CENTRE))
+
+
+def test_each_part_on_disk_is_one_watertight_body(clay_hand):
+    for file in sorted((clay_hand / "parts").glob("*/*.stl")):
+        mesh = trimesh.load_mesh(file)
+        assert mesh.is_watertight and mesh.volume > 0 and mesh.body_count == 1, file.name
+
+
+def test_meshes_lose_little_volume(clay_parts):
+    for part in clay_parts.values():
+        assert part.mesh.volume == pytest.approx(part.solid.Volume(), rel=6e-3)
+
+
+def test_fingers_share_their_parts(clay_parts):
+    assert {name: part.count for name, part in clay_parts.items()} == {
+        "palm": 1,
+        "mcp_cross": 4,
+        "proximal_bone": 4,
+        "proximal_skin": 4,
+        "distal_bone": 4,
+        "distal_skin": 4,
+    }
+
+
+def bent_ring_volume(outer: float, inner: float, length: float, bend: float) -> float:
+    """Volume of a tube whose one end is cut square on the one half and by a bend plane on the other."""
+    return math.pi * (outer**2 - inner**2) * length - math.tan(bend) * bend_moment(outer, inner)
+
+
+def bend_moment(outer: float, inner: float) -> float:
+    """Integral of |z| over the half ring z < 0."""
+    return 2 / 3 * (outer**3 - inner**3)
+
+
+def test_proximal_skin_has_its_closed_form_volume(clay_parts):
+    d = DIMENSIONS
+    length = d.proximal_length - d.clearance - d.shaft_start
+    expected = bent_ring_volume(d.skin_outer, d.skin_inner, length, d.ip_flex[1] / 2)
+    assert clay_parts["proximal_skin"].solid.Volume() == pytest.approx(expected, rel=1e-6)
+
+
+def test_distal_skin_has_its_closed_form_volume(clay_parts):
+    d = DIMENSIONS
+    tube = bent_ring_volume(
+        d.skin_outer, d.skin_inner, d.distal_axis_length - d.clearance, d.ip_flex[1] / 2
+    )
+    cap = 2 / 3 * math.pi * (d.skin_outer**3 - d.skin_inner**3)
+    assert clay_parts["distal_skin"].solid.Volume() == pytest.approx(tube + cap, rel=1e-6)
+
+
+def test_cross_is_a_cube_less_its_pin_holes(clay_parts):
+    d = DIMENSIONS
+    section = math.pi * d.pin_hole**2
+    holes = section * 2 * d.hub + 2 * section * (d.hub - d.pin_hole - 0.6)
+    expected = (2 * d.hub) ** 3 - holes
+    assert clay_parts["mcp_cross"].solid.Volume() == pytest.approx(expected, rel=1e-6)
+
+
+def contact_points(link: str, edge_mm: float) -> np.ndarray:
+    """Points of the contact capsule where a tool may touch, (n, 3) [mm] in the link's frame."""
+    geometry = geometry_of(CENTRE)
+    r, bend = geometry.radius_mm, math.tan(DIMENSIONS.ip_flex[1] / 2)
+    length = geometry.distal_length_mm - r if link == "distal" else geometry.proximal_length_mm
+    last = length + 0.9 * math.pi / 2 * r if link == "distal" else length
+    points = []
+    for phi in np.linspace(-math.pi, math.pi, 49):
+        margin = r * max(math.cos(phi), 0.0) * bend + edge_mm
+        first, end = (margin, last) if link == "distal" else (DIMENSIONS.shaft_start, last - margin)
+        for s in np.linspace(first, end, 25):
+            t = max(s - length, 0.0) / r
+            ring = r * math.cos(t)
+            x = min(s, length) + r * math.sin(t)
+            points.append((x, ring * math.sin(phi), -ring * math.cos(phi)))
+    return np.array(points)
+
+
+@pytest.mark.parametrize("link", ["proximal", "distal"])
+def test_skin_is_the_contact_capsule(clay_parts, link):
+    points = contact_points(link, edge_mm=1.0)
+    _, distance, _ = trimesh.proximity.closest_point(clay_parts[f"{link}_skin"].mesh, points)
+    assert distance.max() <= 0.05
+
+
+def test_oversize_lifts_the_skin():
+    d = finger_dimensions(with_print(skin_oversize_mm=0.4), geometry_of(CENTRE))
+    tip = distal_skin(d).BoundingBox().xmax
+    assert tip == pytest.approx(geometry_of(CENTRE).distal_length_mm + 0.4, abs=1e-6)
+
+
+def palm_excess(values: tuple[float, ...], vertices: np.ndarray) -> float:
+    """How far [mm] a point of a palm's mesh lies outside of all palm primitives."""
+    excess = np.full(len(vertices), np.inf)
+    for shape in geometry_of(values).palm:
+        axis = shape.end_mm - shape.start_mm
+        share = (vertices - shape.start_mm) @ axis / max(axis @ axis, 1e-12)
+        nearest = shape.start_mm + np.clip(share, 0, 1)[:, None] * axis
+        distance = np.linalg.norm(vertices - nearest, axis=1) - shape.radius_mm
+        excess = np.minimum(excess, distance)
+    return float(excess.max())
+
+
+def test_palm_fits_in_its_primitives(clay_parts):
+    assert palm_excess(CENTRE, clay_parts["palm"].mesh.vertices) <= 0
+
+
+@pytest.mark.parametrize("values", CORNERS, ids=str)
+def test_corners_of_the_design_space_can_be_made(values):
+    parts = {part.name: part for part in parts_of(values)}
+    assert palm_excess(values, parts["palm"].mesh.vertices) <= 0
+    assert all(part.solid.isValid() and part.mesh.is_watertight for part in parts.values())
+
+
+def test_thick_skin_leaves_no_room_for_the_bone():
+    with pytest.raises(FpcadError, match="finger: skin and clearance leave a bone of radius"):
+        finger_dimensions(with_print(skin_thickness_mm=6.0), geometry_of(CENTRE))
+
+
+def test_a_finger_without_root_sphere_is_named():
+    hand = CLAY.hand.model_copy(
+        update={"palm": tuple(p for p in CLAY.hand.palm if p.name != "ring_mcp")}
+    )
+    spec = CLAY.model_copy(update={"hand": hand})
+    with pytest.raises(FpcadError, match="hand.palm: ring has no sphere"):
+        finger_dimensions(spec, geometry_of(CENTRE, spec))
+
+
+def test_two_bodies_are_no_part():
+    apart = ball((0, 0, 0), 1.0).fuse(ball((9, 0, 0), 1.0))
+    with pytest.raises(FpcadError, match="part pair: .* 2 bodies"):
+        mesh_of("pair", apart, CLAY.print)

@@ -1,0 +1,37 @@
+"""A missing system library is told in one line that names the package to install."""
+
+from __future__ import annotations
+
+import pytest
+
+from fpcad.errors import ToolchainError
+from fpcad.make import toolchain
+
+
+def without(monkeypatch: pytest.MonkeyPatch, *missing: str) -> None:
+    monkeypatch.setattr(toolchain, "_loads", lambda library: library not in missing)
+
+
+def test_cadquery_names_the_one_library_that_is_missing(monkeypatch):
+    without(monkeypatch, "libGL.so.1")
+    with pytest.raises(ToolchainError) as raised:
+        toolchain.cadquery()
+    assert str(raised.value) == (
+        "cadquery needs the system library libGL.so.1: install it with `apt-get install libgl1`"
+    )
+
+
+def test_cadquery_names_all_libraries_that_are_missing(monkeypatch):
+    without(monkeypatch, "libGL.so.1", "libX11.so.6")
+    with pytest.raises(ToolchainError, match="install them with `apt-get install libgl1 libx11-6`"):
+        toolchain.cadquery()
+
+
+def test_drawing_needs_either_library(monkeypatch):
+    without(monkeypatch, "libEGL.so.1", "libOSMesa.so.8")
+    with pytest.raises(ToolchainError, match="libEGL.so.1 or libOSMesa.so.8.*libegl1`"):
+        toolchain.pyvista()
+
+
+def test_a_library_that_does_not_exist_does_not_load():
+    assert not toolchain._loads("libdoes-not-exist.so.0")
