@@ -37,8 +37,12 @@ def pyvista() -> ModuleType:
     """The pyvista module, ready to draw without a screen."""
     window = _offscreen_window()
     os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", window)  # else VTK tries the X server first
-    import pyvista
-
+    try:
+        import pyvista
+    except ModuleNotFoundError as error:
+        raise ToolchainError(
+            f"drawing needs the Python package {error.name}: `pip install fpcad[pictures]`"
+        ) from error
     return pyvista
 
 

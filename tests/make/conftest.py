@@ -21,5 +21,5 @@ def clay_parts() -> dict[str, Part]:
 def clay_hand(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Build folder of the hand at the centre of clay's box."""
     out = tmp_path_factory.mktemp("clay")
-    make_hand(CLAY, geometry_of, parts_of(CENTRE), out)
+    make_hand(CLAY, geometry_of(CENTRE), out)
     return out

@@ -6,7 +6,7 @@ import itertools
 import xml.etree.ElementTree as ET
 
 import numpy as np
-import pinocchio
+import pinocchio  # pyright: ignore[reportMissingImports]
 import pytest
 import trimesh
 import yourdfpy
@@ -87,9 +87,11 @@ def test_limits_are_the_specs_and_the_motors(clay_hand):
 
 
 def test_inertias_belong_to_real_bodies(clay_hand):
-    for link in yourdfpy.URDF.load(str(urdf_file(clay_hand)), load_meshes=False).robot.links:
-        moments = np.linalg.eigvalsh(link.inertial.inertia)
-        assert link.inertial.mass > 0 and moments[0] > 0
+    model = pinocchio.buildModelFromUrdf(str(urdf_file(clay_hand)))
+    assert len(model.inertias) == 13
+    for body in model.inertias[1:]:  # the first stands for the fixed palm
+        moments = np.linalg.eigvalsh(body.inertia)
+        assert body.mass > 0 and moments[0] > 0
         assert moments[2] < moments[0] + moments[1]
 
 
@@ -143,3 +145,11 @@ def test_pose_along_points_its_z():
     pose = pose_along(np.zeros(3), axis)
     assert np.allclose(pose[:3, 2], axis)
     assert np.isclose(np.linalg.det(pose[:3, :3]), 1.0)
+
+
+def test_the_palm_weighs_what_its_part_does(clay_hand, clay_parts):
+    palm = ET.parse(urdf_file(clay_hand)).getroot().find("link[@name='palm']/inertial/mass")
+    assert palm is not None
+    volume_cm3 = clay_parts["palm"].mesh.volume * 1e-3
+    expected_kg = volume_cm3 * CLAY.print.bone_density_g_cm3 * 1e-3
+    assert float(palm.get("value", "nan")) == pytest.approx(expected_kg)

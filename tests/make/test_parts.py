@@ -138,11 +138,11 @@ def test_a_finger_without_root_sphere_is_named():
         update={"palm": tuple(p for p in CLAY.hand.palm if p.name != "ring_mcp")}
     )
     spec = CLAY.model_copy(update={"hand": hand})
-    with pytest.raises(FpcadError, match="hand.palm: ring has no sphere"):
+    with pytest.raises(FpcadError, match=r"hand\.palm: ring has no sphere"):
         finger_dimensions(spec, geometry_of(CENTRE, spec))
 
 
 def test_two_bodies_are_no_part():
     apart = ball((0, 0, 0), 1.0).fuse(ball((9, 0, 0), 1.0))
-    with pytest.raises(FpcadError, match="part pair: .* 2 bodies"):
+    with pytest.raises(FpcadError, match=r"part pair: .* 2 bodies"):
         mesh_of("pair", apart, CLAY.print)

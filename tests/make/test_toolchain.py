@@ -29,7 +29,7 @@ def test_cadquery_names_all_libraries_that_are_missing(monkeypatch):
 
 def test_drawing_needs_either_library(monkeypatch):
     without(monkeypatch, "libEGL.so.1", "libOSMesa.so.8")
-    with pytest.raises(ToolchainError, match="libEGL.so.1 or libOSMesa.so.8.*libegl1`"):
+    with pytest.raises(ToolchainError, match=r"libEGL\.so\.1 or libOSMesa\.so\.8.*libegl1`"):
         toolchain.pyvista()
 
 
