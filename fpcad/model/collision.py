@@ -39,9 +39,7 @@ class Body(NamedTuple):
     radius: Expr
 
 
-def link_bodies(
-    template: HandTemplate, d: Expr, frames: dict[str, dict[str, Frame]]
-) -> list[Body]:
+def link_bodies(template: HandTemplate, d: Expr, frames: dict[str, dict[str, Frame]]) -> list[Body]:
     """Capsules of all links of all fingers, in the frame that `frames` are given in."""
     bodies = []
     for finger, links in frames.items():
@@ -70,7 +68,9 @@ def collision_pairs(
             yield Pair(name, a.axis, b.axis, a.radius + b.radius)
     for body in bodies:
         if (body.finger, body.link) not in touching:
-            yield Pair(f"tool/{body.finger}.{body.link}", tool, body.axis, tool_radius + body.radius)
+            yield Pair(
+                f"tool/{body.finger}.{body.link}", tool, body.axis, tool_radius + body.radius
+            )
     for solid in palm:
         axis = Segment(solid.start, solid.end)
         yield Pair(f"tool/{solid.name}", tool, axis, tool_radius + solid.radius)
@@ -78,4 +78,9 @@ def collision_pairs(
     for body, solid in product(last.values(), palm):
         if solid.exempt_finger is None:
             axis = Segment(solid.start, solid.end)
-            yield Pair(f"{body.finger}.{body.link}/{solid.name}", body.axis, axis, body.radius + solid.radius)
+            yield Pair(
+                f"{body.finger}.{body.link}/{solid.name}",
+                body.axis,
+                axis,
+                body.radius + solid.radius,
+            )

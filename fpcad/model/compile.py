@@ -8,7 +8,8 @@ import os
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -38,11 +39,11 @@ class Kernel:
         self._outputs: list[Array] = []
         self.outputs: tuple[Array, ...] = ()
         for i, value in enumerate(self._inputs):
-            self._buffer.set_arg(i, memoryview(value))
+            self._buffer.set_arg(i, value.data)  # pyright: ignore[reportCallIssue]
         for i in range(function.n_out()):
             rows, columns = function.size_out(i)
             flat = np.zeros(rows * columns)
-            self._buffer.set_res(i, memoryview(flat))
+            self._buffer.set_res(i, flat.data)  # pyright: ignore[reportCallIssue]
             self._outputs.append(flat if columns == 1 else flat.reshape(columns, rows))
         self.outputs = tuple(self._outputs)
 
@@ -64,23 +65,26 @@ def jacobian_transposed(expression: ca.SX, variables: ca.SX) -> ca.SX:
     return ca.jacobian(expression, variables).T
 
 
-def load_function(build: Callable[[], ca.Function], name: str, key: str, cache: Path) -> ca.Function:
-    """The function `build` states, from the cache where `key` was seen before.
+def load_functions(
+    builders: Mapping[str, Callable[[], ca.Function]], key: str, cache: Path
+) -> dict[str, ca.Function]:
+    """The functions that `builders` state, by name, from the cache where `key` was seen before.
 
-    With a C compiler it is machine code, else CasADi's virtual machine interprets it.
+    With a C compiler they become machine code, all at once on the cores there are; without one
+    CasADi's virtual machine interprets them.
     """
-    library, formula = cache / f"{name}-{key}.so", cache / f"{name}-{key}.casadi"
-    if library.exists():
-        return ca.external(name, str(library))
     cache.mkdir(parents=True, exist_ok=True)
-    if compiler() is not None:
-        function = build()
-        _write_beside(library, lambda path: _compile(function, path))
-        return ca.external(name, str(library))
-    if not formula.exists():
-        function = build()
-        _write_beside(formula, lambda path: function.save(str(path)))
-    return ca.Function.load(str(formula))
+    suffix = "casadi" if compiler() is None else "so"
+    files = {name: cache / f"{name}-{key}.{suffix}" for name in builders}
+    missing = {name: build() for name, build in builders.items() if not files[name].exists()}
+    if compiler() is None:
+        for name, function in missing.items():
+            _write_beside(files[name], lambda path, f=function: f.save(str(path)))
+        return {name: ca.Function.load(str(file)) for name, file in files.items()}
+    sources = {name: _c_source(function) for name, function in missing.items()}
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(lambda name: _compile(sources[name], files[name]), sources))
+    return {name: ca.external(name, str(file)) for name, file in files.items()}
 
 
 @cache
@@ -102,18 +106,26 @@ def cache_key(*parts: str) -> str:
     for source in sorted(resources.files("fpcad.model").iterdir(), key=lambda f: f.name):
         if source.name.endswith(".py"):
             digest.update(source.read_bytes())
-    for part in (ca.__version__, " ".join(COMPILER_FLAGS), *parts):
+    for part in (ca.CasadiMeta.version(), " ".join(COMPILER_FLAGS), *parts):
         digest.update(b"\0" + part.encode())
     return digest.hexdigest()[:20]
 
 
-def _compile(function: ca.Function, library: Path) -> None:
-    with tempfile.TemporaryDirectory(dir=library.parent) as folder:
-        generator = ca.CodeGenerator(function.name() + ".c")
-        generator.add(function)
-        source = generator.generate(folder + os.sep)
-        command = [str(compiler()), *COMPILER_FLAGS, source, "-o", str(library), "-lm"]
-        subprocess.run(command, check=True, capture_output=True, text=True)
+def _c_source(function: ca.Function) -> str:
+    generator = ca.CodeGenerator(function.name() + ".c")
+    generator.add(function)
+    return generator.dump()
+
+
+def _compile(source: str, library: Path) -> None:
+    command = [str(compiler()), *COMPILER_FLAGS, "-x", "c", "-", "-lm", "-o"]
+
+    def run(path: Path) -> None:
+        subprocess.run(
+            [*command, str(path)], input=source, check=True, capture_output=True, text=True
+        )
+
+    _write_beside(library, run)
 
 
 def _write_beside(target: Path, write: Callable[[Path], None]) -> None:

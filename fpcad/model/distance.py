@@ -36,9 +36,7 @@ def segment_distance_squared(a: Segment, b: Segment) -> Expr:
     safe = ca.if_else(crossing, sine, 1)
     uw, vw = ca.dot(u, w), ca.dot(v, w)
     s, t = (uv * vw - vv * uw) / safe, (uu * vw - uv * uw) / safe
-    inside = ca.logic_and(
-        crossing, ca.logic_and(ca.fmin(s, t) >= 0, ca.fmax(s, t) <= 1)
-    )
+    inside = ca.logic_and(crossing, ca.logic_and(ca.fmin(s, t) >= 0, ca.fmax(s, t) <= 1))
     normal = ca.cross(u, v)
     inner = ca.dot(w, normal) ** 2 / safe
     return ca.if_else(inside, inner, ends)

@@ -106,7 +106,5 @@ def _solve(cost: Array, rows: Array, bound: Array, upper: Array) -> Array | None
     sense = np.full(n + m, INEQUALITY, dtype=np.int32)
     sense[n : n + 6] = EQUALITY
     lower = np.concatenate([np.zeros(n), bound[:6], np.full(m - 6, -UNBOUNDED)])
-    x, _, flag, _ = daqp.solve(
-        None, cost, rows, np.concatenate([upper, bound]), lower, sense
-    )
+    x, _, flag, _ = daqp.solve(None, cost, rows, np.concatenate([upper, bound]), lower, sense)
     return x if flag == OPTIMAL else None

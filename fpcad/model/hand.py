@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from fpcad.model.frames import Expr, Frame, rot_x, rot_y, rot_z
 from fpcad.spec.hand import Hand, PalmCapsule, PalmSphere
-from fpcad.units import RAD_PER_DEG
 from fpcad.spec.templates import TEMPLATES, TemplateNames
+from fpcad.units import RAD_PER_DEG
 
 
 class LinkShape(NamedTuple):
@@ -98,7 +98,9 @@ class AnthropomorphicHand:
         radius = d[3] / 2
         if link == "distal":
             return LinkShape(d[0] - radius, radius, True, True, False, 0.0)
-        hidden = max((s.radius_mm for s in self.spec.palm if isinstance(s, PalmSphere)), default=0.0)
+        hidden = max(
+            (s.radius_mm for s in self.spec.palm if isinstance(s, PalmSphere)), default=0.0
+        )
         length = self.spec.finger_length_mm - d[0]
         return LinkShape(length, radius, False, False, True, hidden)
 
@@ -120,9 +122,7 @@ class AnthropomorphicHand:
         return solids
 
 
-TEMPLATE_CLASSES: dict[str, type[AnthropomorphicHand]] = {
-    "anthropomorphic_4f": AnthropomorphicHand
-}
+TEMPLATE_CLASSES: dict[str, type[AnthropomorphicHand]] = {"anthropomorphic_4f": AnthropomorphicHand}
 
 
 def hand_template(spec: Hand) -> HandTemplate:

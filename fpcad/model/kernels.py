@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import casadi as ca
@@ -13,9 +13,9 @@ from fpcad.model.compile import (
     cache_key,
     dense_function,
     jacobian_transposed,
-    load_function,
+    load_functions,
 )
-from fpcad.model.pose import PoseModel, StateLayout
+from fpcad.model.pose import HAND_SIZE, PoseModel, StateLayout
 from fpcad.spec.schema import Spec
 
 
@@ -27,12 +27,11 @@ class PoseKernels:
     """
 
     layout: StateLayout
-    foundational: Kernel
-    """(d, y) -> cost residuals, their Jacobian, rows (5n,), Jacobian, margins (m_g,), Jacobian."""
-    projection: Kernel
-    """(d, h, turn, x) -> rows (5n,), Jacobian in x, margins (m_g,), Jacobian in x."""
+    constraints: Kernel
+    """(d, turn, y) -> cost residuals, rows (5n,) and margins (m_g,), each followed by its Jacobian
+    in [y, turn]."""
     rates: Kernel
-    """(d, h, turn, x) -> rows affine in the joint rates; see :func:`rates_function`."""
+    """(d, h, turn, x) -> motions that are affine in the joint rates; see :func:`rates_function`."""
     statics: Kernel
     """(d, h, turn, x) -> edge wrenches (6, n m), edge torques (n_u, n m), tip wrench (6,)."""
     residual: Kernel
@@ -44,67 +43,43 @@ def load_kernels(spec: Spec, pose: str, cache: Path) -> PoseKernels:
     sections = (spec.tool, spec.hand, spec.poses[pose], spec.statics, spec.bounds)
     key = cache_key(*(section.model_dump_json() for section in sections))
     model = PoseModel(spec, pose)
-    builders: dict[str, Callable[[PoseModel], ca.Function]] = {
-        "foundational": foundational_function,
-        "projection": projection_function,
-        "rates": rates_function,
-        "statics": statics_function,
-        "residual": residual_function,
+    builders = {
+        "constraints": partial(constraints_function, model),
+        "rates": partial(rates_function, model),
+        "statics": partial(statics_function, model),
+        "residual": partial(residual_function, model),
     }
-    kernels = {
-        name: Kernel(load_function(lambda build=build: build(model), name, key, cache))
-        for name, build in builders.items()
-    }
+    functions = load_functions(builders, key, cache)
+    kernels = {name: Kernel(function) for name, function in functions.items()}
     return PoseKernels(layout=model.layout, **kernels)
 
 
-def foundational_function(model: PoseModel) -> ca.Function:
-    """Cost, constraint rows and margins of a pose, the tool unturned, with Jacobians in y."""
-    y = ca.SX.sym("y", model.layout.size)
+def constraints_function(model: PoseModel) -> ca.Function:
+    """Cost, constraint rows and margins, with Jacobians in the state y and the tool angle."""
+    variables = ca.vertcat(model.y, model.turn)
     outputs = []
     for expression in (model.cost(), model.rows(), _margins(model)):
-        outputs += [expression, jacobian_transposed(expression, model.y)]
-    parts = [y[model.layout.hand], y[model.layout.joints], y[model.layout.contacts]]
-    symbols = [model.turn, model.h, model.u, model.a]
-    bound = ca.substitute(outputs, symbols, [ca.SX(0), *parts])
-    return dense_function("foundational", [model.d, y], bound)
-
-
-def projection_function(model: PoseModel) -> ca.Function:
-    """Constraint rows and margins on a path, with Jacobians in x = [u, a]."""
-    rows, margins = model.rows(), _margins(model)
-    x = ca.vertcat(model.u, model.a)
-    outputs = [rows, jacobian_transposed(rows, x), margins, jacobian_transposed(margins, x)]
-    return _path_function("projection", model, outputs)
+        outputs += [expression, jacobian_transposed(expression, variables)]
+    return _state_function("constraints", model, outputs)
 
 
 def rates_function(model: PoseModel) -> ca.Function:
     """What the rate program needs, as (matrix on the joint rates, constant at tool rate 1 rad/s).
 
     Outputs: sliding (2n, n_u), (2n,) [mm/s]; approach (n, n_u), (n,) [mm/s]; contact rates
-    (4n, n_u), (4n,) [mm/s, rad/s]; margins (m,) [mm]; their rates (m, n_u), (m,) [mm/s];
-    normalized determinants of the relative curvatures (n,).
+    (4n, n_u), (4n,) [mm/s, rad/s]; normalized determinants of the relative curvatures (n,).
     """
     u_rate, turn_rate = ca.SX.sym("u_rate", model.layout.n_u), ca.SX.sym("turn_rate")
     motions = model.relative_motions(u_rate, turn_rate)
     contacts = model.contact_rates(motions)
-    a_rate = ca.vertcat(*[ca.vertcat(c.tool, c.finger) for c in contacts])
-    margins = ca.vertcat(model.skin_margin(), model.collision_margin())
-    symbols = ca.vertcat(model.turn, model.u, model.a)
-    margin_rate = ca.jtimes(margins, symbols, ca.vertcat(turn_rate, u_rate, a_rate))
     outputs = []
     for rate in (
         ca.vertcat(*[m.sliding for m in motions]),
         ca.vertcat(*[m.approach for m in motions]),
-        a_rate,
+        ca.vertcat(*[ca.vertcat(c.tool, c.finger) for c in contacts]),
     ):
         outputs += [jacobian_transposed(rate, u_rate), ca.jacobian(rate, turn_rate)]
-    outputs += [
-        margins,
-        jacobian_transposed(margin_rate, u_rate),
-        ca.jacobian(margin_rate, turn_rate),
-        ca.vertcat(*[c.determinant for c in contacts]),
-    ]
+    outputs.append(ca.vertcat(*[c.determinant for c in contacts]))
     return _path_function("rates", model, outputs)
 
 
@@ -116,16 +91,13 @@ def statics_function(model: PoseModel) -> ca.Function:
 
 def residual_function(model: PoseModel) -> ca.Function:
     """The measures that an accepted state is judged by, without derivatives."""
-    y = ca.SX.sym("y", model.layout.size)
     outputs = [
         model.residual(),
         model.opposition_margin(),
         model.skin_margin(),
         model.clearances(),
     ]
-    parts = [y[model.layout.hand], y[model.layout.joints], y[model.layout.contacts]]
-    bound = ca.substitute(outputs, [model.h, model.u, model.a], parts)
-    return dense_function("residual", [model.d, model.turn, y], bound)
+    return _state_function("residual", model, outputs)
 
 
 def _margins(model: PoseModel) -> ca.SX:
@@ -135,8 +107,17 @@ def _margins(model: PoseModel) -> ca.SX:
     )
 
 
+def _state_function(name: str, model: PoseModel, outputs: list[ca.SX]) -> ca.Function:
+    """Outputs as a function of (d, turn, y)."""
+    y = ca.SX.sym("y", model.layout.size)
+    parts = [y[model.layout.hand], y[model.layout.joints], y[model.layout.contacts]]
+    bound = ca.substitute(outputs, [model.h, model.u, model.a], parts)
+    return dense_function(name, [model.d, model.turn, y], bound)
+
+
 def _path_function(name: str, model: PoseModel, outputs: list[ca.SX]) -> ca.Function:
-    x = ca.SX.sym("x", model.layout.size - 6)
+    """Outputs as a function of (d, h, turn, x), x = [u, a]."""
     n_u = model.layout.n_u
+    x = ca.SX.sym("x", model.layout.size - HAND_SIZE)
     bound = ca.substitute(outputs, [model.u, model.a], [x[:n_u], x[n_u:]])
     return dense_function(name, [model.d, model.h, model.turn, x], bound)

@@ -51,7 +51,7 @@ class StateLayout:
 
     @property
     def hand(self) -> slice:
-        """xyz [mm], roll pitch yaw [rad] of H in O."""
+        """Position xyz [mm] and roll, pitch, yaw [rad] of H in O."""
         return slice(0, HAND_SIZE)
 
     @property
@@ -167,7 +167,9 @@ class PoseModel:
         """All pairs of solids that must stay apart, in H."""
         to_hand = Frame(self.hand_frame.R.T, -self.hand_frame.R.T @ self.hand_frame.p)
         tool = to_hand @ self.tool_frame
-        ends = (tool.point(ca.DM([x, 0, 0])) for x in (self.spec.tool.back_mm, self.spec.tool.tip_mm))
+        ends = (
+            tool.point(ca.DM([x, 0, 0])) for x in (self.spec.tool.back_mm, self.spec.tool.tip_mm)
+        )
         touching = {(c.finger, c.link) for c in self.pose.contacts}
         bodies = link_bodies(self.template, self.d, self.link_frames)
         palm, radius = self.template.palm(self.d), self.spec.tool.radius_mm
@@ -208,7 +210,9 @@ class PoseModel:
 
     def contact_rates(self, motions: list[RelativeMotion]) -> list[ContactRates]:
         """Rates of the contact coordinates that keep contact, for given relative motions."""
-        return [contact_rates(t, f, m) for (t, f), m in zip(self.contact_pairs, motions, strict=True)]
+        return [
+            contact_rates(t, f, m) for (t, f), m in zip(self.contact_pairs, motions, strict=True)
+        ]
 
     def cone_edges(self) -> ConeEdges:
         """Wrenches (6, n m) and joint torques (n_u, n m) of all friction cones' edges."""

@@ -28,7 +28,14 @@ def pose_state(initial: InitialPose, names: TemplateNames) -> Array:
 
 def state_columns(pose: str, names: TemplateNames, layout: StateLayout) -> list[str]:
     """Names of a state's entries in tables: units in the suffix, `pose.` in front."""
-    hand = ["hand_x_mm", "hand_y_mm", "hand_z_mm", "hand_roll_rad", "hand_pitch_rad", "hand_yaw_rad"]
+    hand = [
+        "hand_x_mm",
+        "hand_y_mm",
+        "hand_z_mm",
+        "hand_roll_rad",
+        "hand_pitch_rad",
+        "hand_yaw_rad",
+    ]
     joints = [f"{finger}_{joint}_rad" for finger in names.fingers for joint in names.joints]
     kinds = ("tool_axial_mm", "tool_angle_rad", "arclength_mm", "finger_angle_rad")
     contacts = [

@@ -33,8 +33,10 @@ def cone_edges(statics: Statics, tool: SurfacePoint) -> Expr:
 
 
 def contact_edges(statics: Statics, tool: SurfacePoint, jacobian: Expr) -> ConeEdges:
-    """Wrenches and torques of one contact's edges; `jacobian` (3, n_joints) [mm/rad] is that of the
-    finger's material point, so that tau = J' f."""
+    """Wrenches and torques of one contact's edges.
+
+    `jacobian` (3, n_joints) [mm/rad] is that of the finger's material point, so that tau = J' f.
+    """
     edges = cone_edges(statics, tool)
     return ConeEdges(ca.vertcat(edges, ca.skew(tool.p) @ edges), jacobian.T @ edges)
 

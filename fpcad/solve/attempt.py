@@ -21,6 +21,7 @@ from fpcad.spec.schema import Spec
 
 Array = NDArray[np.float64]
 
+
 @dataclass(frozen=True)
 class Workbench:
     """A spec with its compiled formulas: what every worker needs."""

@@ -28,7 +28,9 @@ def build_ipopt(spec: Spec, pose: str) -> ca.Function:
     model = PoseModel(spec, pose)
     margins = ca.vertcat(model.opposition_margin(), model.skin_margin(), model.collision_margin())
     constraints = ca.vertcat(model.rows(), margins)
-    cost, constraints = ca.substitute([ca.sumsqr(model.cost()), constraints], [model.turn], [ca.SX(0)])
+    cost, constraints = ca.substitute(
+        [ca.sumsqr(model.cost()), constraints], [model.turn], [ca.SX(0)]
+    )
     program = {"x": model.y, "p": model.d, "f": cost, "g": constraints}
     return ca.nlpsol("ipopt", "ipopt", program, OPTIONS)
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fpcad.model.hand import hand_template
 from fpcad.model.kernels import PoseKernels
-from fpcad.model.pose import CONTACT_SIZE, StateLayout
+from fpcad.model.pose import CONTACT_SIZE, HAND_SIZE, StateLayout
 from fpcad.spec.schema import Spec
 from fpcad.units import RAD_PER_DEG
 
@@ -57,7 +57,8 @@ def build_pose_program(spec: Spec, pose: str, kernels: PoseKernels, design: Arra
     """
 
     def evaluate(y: Array) -> Linearization:
-        return Linearization(*kernels.foundational(design, y))
+        values = kernels.constraints(design, 0.0, y)
+        return Linearization(*_in_columns(values, slice(0, kernels.layout.size)))
 
     lower, upper = pose_bounds(spec, pose, kernels.layout)
     return Program(evaluate, lower, upper, kernels.layout.scale)
@@ -75,20 +76,19 @@ def build_projection_program(
     Hand pose (6,) and tool angle stay. It has no cost: the state nearest to a guess is what
     :func:`fpcad.solve.sqp.restore` finds; 10 mm count as 1 rad.
     """
-    scale = kernels.layout.scale[kernels.layout.joints.start :]
-    none, no_jacobian = np.zeros(0), np.zeros((0, len(scale)))
+    own = slice(HAND_SIZE, kernels.layout.size)
+    no_cost = np.zeros(0), np.zeros((0, own.stop - own.start))
 
     def evaluate(x: Array) -> Linearization:
-        return Linearization(none, no_jacobian, *kernels.projection(design, hand, turn, x))
+        values = kernels.constraints(design, turn, np.concatenate([hand, x]))
+        return Linearization(*no_cost, *_in_columns(values[2:], own))
 
-    return Program(evaluate, *bounds, scale)
+    return Program(evaluate, *bounds, kernels.layout.scale[own])
 
 
 def pose_bounds(spec: Spec, pose: str, layout: StateLayout) -> tuple[Array, Array]:
     """Bounds (layout.size,) on the state y at a pose [mm, rad]; contact windows among them."""
-    windows = [
-        [c.axial_mm, np.array(c.angle_deg) * RAD_PER_DEG] for c in spec.poses[pose].contacts
-    ]
+    windows = [[c.axial_mm, np.array(c.angle_deg) * RAD_PER_DEG] for c in spec.poses[pose].contacts]
     finger = spec.bounds.finger_angle_deg * RAD_PER_DEG
     position, rotation = spec.bounds.hand_position_mm, spec.bounds.hand_rotation_deg * RAD_PER_DEG
     hand = np.array([position] * 3 + [rotation] * 3)
@@ -105,6 +105,11 @@ def path_bounds(spec: Spec, pose: str, layout: StateLayout) -> tuple[Array, Arra
     joints = _joint_bounds(spec)
     both = np.concatenate([joints, contacts])
     return both[:, 0], both[:, 1]
+
+
+def _in_columns(values: tuple[Array, ...], columns: slice) -> list[Array]:
+    """Values, and of the Jacobian that follows each the columns of some variables."""
+    return [v if v.ndim == 1 else v[:, columns] for v in values]
 
 
 def _joint_bounds(spec: Spec) -> Array:

@@ -48,7 +48,9 @@ def solve_daqp(program: QuadraticProgram) -> QpSolution | None:
     low = np.concatenate([program.lower, program.row_lower])
     high = np.concatenate([program.upper, program.row_upper])
     sense = np.where(low == high, _EQUALITY, 0).astype(np.int32)
-    x, _, flag, info = daqp.solve(program.H, program.f, program.A, high, low, sense, primal_tol=PRIMAL_TOLERANCE)
+    x, _, flag, info = daqp.solve(
+        program.H, program.f, program.A, high, low, sense, primal_tol=PRIMAL_TOLERANCE
+    )
     return QpSolution(x, info["lam"][n:]) if flag in _OPTIMAL else None
 
 
@@ -59,7 +61,9 @@ def solve_daqp_softly(program: QuadraticProgram) -> QpSolution | None:
     high = np.concatenate([program.upper, program.row_upper])
     sense = np.full(len(low), _SOFT, dtype=np.int32)
     sense[:n] = np.where(program.lower == program.upper, _EQUALITY, 0)
-    x, _, flag, info = daqp.solve(program.H, program.f, program.A, high, low, sense, primal_tol=PRIMAL_TOLERANCE)
+    x, _, flag, info = daqp.solve(
+        program.H, program.f, program.A, high, low, sense, primal_tol=PRIMAL_TOLERANCE
+    )
     return QpSolution(x, info["lam"][n:]) if flag in _OPTIMAL else None
 
 
@@ -84,7 +88,7 @@ def solve_osqp(program: QuadraticProgram) -> QpSolution | None:
         polishing=True,
     )
     result = solver.solve(raise_error=False)
-    if result.info.status_val != osqp.SolverStatus.OSQP_SOLVED:
+    if result.info.status_val != osqp.SolverStatus.OSQP_SOLVED:  # pyright: ignore[reportAttributeAccessIssue]
         return None
     return QpSolution(result.x, result.y[n:])
 

@@ -46,8 +46,10 @@ class Solver(SpecModel):
     """`sqp`: trust-region Gauss-Newton over DAQP; `ipopt`: interior point, the slow reference."""
     max_iterations: Annotated[int, Field(ge=1, le=10_000)] = 60
     """Iterations after which a solve is given up."""
-    starts: Annotated[int, Field(ge=1, le=1_000_000)] = 2_000
-    """Random starts for each pose, when the spec gives no `initial`."""
+    starts: Annotated[int, Field(ge=1, le=1_000_000)] = 256
+    """Random starts for each pose of a design, when the spec gives no `initial`."""
+    start_designs: Annotated[int, Field(ge=1, le=1_000_000)] = 100
+    """Designs that are tried for a first hand, when the spec gives no `initial`."""
 
 
 class Sampling(SpecModel):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fpcad.errors import SolveError
 from fpcad.model.pose import HAND_SIZE
 from fpcad.model.transmission import hand_transmission
 from fpcad.solve.attempt import Workbench
@@ -15,7 +16,9 @@ from fpcad.solve.program import path_bounds
 from fpcad.solve.qp import BACKENDS
 from fpcad.spec.catalogue import motor
 from fpcad.spec.schema import Spec
+from fpcad.spec.templates import TEMPLATES
 from fpcad.units import NM_PER_NMM, RAD_PER_DEG
+from fpcad.wield.integrate import project
 from fpcad.wield.metrics import PathMetrics, path_metrics
 from fpcad.wield.path import WieldingPath, join_traces
 from fpcad.wield.rates import Mechanism
@@ -53,6 +56,34 @@ def evaluate(bench: Workbench, design: Array, states: Mapping[str, Array]) -> Ev
     return Evaluation(paths, metrics)
 
 
+def motion_range(bench: Workbench, pose: str, design: Array, y: Array) -> float:
+    """Tool motion range [deg] of one pose: the merit of a first hand's poses."""
+    return evaluate(bench, design, {pose: y}).metrics[pose].tmr_deg
+
+
+def contact_projector(
+    bench: Workbench, design: Array, path: WieldingPath
+) -> Callable[[float, Array], Array]:
+    """The function that corrects a guessed posture on a path to exact contact.
+
+    It takes a tool angle [rad] and joints (n_u,) [rad] and returns joints (n_u,) [rad]; the contacts
+    are guessed from the path's states. It raises :class:`SolveError` where there is no contact.
+    """
+    n_states = len(path.tool_angle_rad)
+    joints, contacts = path.joints_rad.reshape(n_states, -1), path.contacts.reshape(n_states, -1)
+    y = np.concatenate([path.hand_in_tool, joints[0], contacts[0]])
+    mechanism = build_mechanism(bench, path.pose, design, y)
+
+    def to_contact(turn: float, guess: Array) -> Array:
+        at = [np.interp(turn, path.tool_angle_rad, column) for column in contacts.T]
+        state = project(mechanism, turn, np.concatenate([guess, at]))
+        if state is None:
+            raise SolveError(f"{path.pose}: no contact at a tool angle of {turn:.4f} rad")
+        return state[: len(guess)]
+
+    return to_contact
+
+
 def build_mechanism(bench: Workbench, pose: str, design: Array, y: Array) -> Mechanism:
     """The mechanism that tool and hand form at a pose with state y."""
     settings, kernels = bench.spec.path, bench.kernels[pose]
@@ -63,7 +94,7 @@ def build_mechanism(bench: Workbench, pose: str, design: Array, y: Array) -> Mec
 
 def build_load(spec: Spec, pose: str) -> Load:
     """Tip force, torque cap and motors of a pose."""
-    A = hand_transmission(spec)
+    A = hand_transmission(spec.motors.transmission, len(TEMPLATES[spec.hand.template].fingers))
     limit = motor(spec.motors.type).continuous_torque_nm / NM_PER_NMM
     return Load(
         tip_force_n=spec.poses[pose].tip_force_n,

@@ -20,7 +20,9 @@ class WieldingPath:
     pose: str
     tool_angle_rad: Array  # (N,) strictly increasing; exactly 0 at the pose
     joints_rad: Array  # (N, n_fingers, n_joints)
-    contacts: Array  # (N, n_contacts, 4): tool axial [mm], tool angle, arc length [mm], finger angle
+    contacts: (
+        Array  # (N, n_contacts, 4): tool axial [mm], tool angle, arc length [mm], finger angle
+    )
     torque_nmm: Array  # (N,) least largest joint torque against the tip force
     tip_force_n: Array  # (N,) largest tip force within the motors' continuous torque
     hand_in_tool: Array  # (6,): xyz [mm], roll pitch yaw [rad] of H in O

@@ -56,9 +56,10 @@ def solve_rates(m: Mechanism, turn: float, x: Array, direction: float, dt: float
         direction: tool rate, +1 or -1 [rad/s].
         dt: time [s] over which bounds and margins are looked ahead.
     """
-    S, s0, N, n0, C, c0, g, G, g0, determinants = m.kernels.rates(m.design, m.hand, turn, x)
+    S, s0, N, n0, C, c0, determinants = m.kernels.rates(m.design, m.hand, turn, x)
     if determinants.min() < SINGULAR_CURVATURE:
         return End.SINGULAR
+    g, G, g0 = _margin_rates(m, turn, x, C, c0)
     program = _rate_program(m, x, (S, direction * s0, N, direction * n0), dt)
     contact_low, contact_high = _look_ahead(m.bounds, x, dt, slice(len(program.f), None))
     bounded = np.isfinite(contact_low)
@@ -93,6 +94,16 @@ def _rate_program(
     lower, upper = _look_ahead(m.bounds, x, dt, slice(0, n_u))
     H = 2 * (S.T @ S + m.rate_weight * np.eye(n_u))
     return QuadraticProgram(H, 2 * S.T @ s0, lower, upper, N, -n0, -n0)
+
+
+def _margin_rates(
+    m: Mechanism, turn: float, x: Array, C: Array, c0: Array
+) -> tuple[Array, Array, Array]:
+    """Margins (m_g,) [mm] and their rates as matrix on the joint rates and constant."""
+    *_, g, J = m.kernels.constraints(m.design, turn, np.concatenate([m.hand, x]))
+    layout = m.kernels.layout
+    by_contacts = J[:, layout.contacts]
+    return g, J[:, layout.joints] + by_contacts @ C, J[:, layout.size] + by_contacts @ c0
 
 
 def _look_ahead(

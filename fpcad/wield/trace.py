@@ -66,7 +66,9 @@ def trace(m: Mechanism, load: Load, x: Array, direction: float, stepping: Steppi
         length = min(stepping.step, left)
         reached = _next(m, load, states[-1], direction, length)
         if isinstance(reached, End):
-            end, last = _bisect(m, load, states[-1], direction, length, stepping.end_tolerance, reached)
+            end, last = _bisect(
+                m, load, states[-1], direction, length, stepping.end_tolerance, reached
+            )
             states += [last] if last is not None else []
             break
         states.append(reached)

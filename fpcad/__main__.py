@@ -1,0 +1,5 @@
+"""`python -m fpcad` is the command line."""
+
+from fpcad.cli import main
+
+main()

@@ -1,0 +1,232 @@
+"""The command line: one short function a verb."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+from rich.markup import escape
+
+from fpcad.console import ConsoleReporter, console, start_logging
+from fpcad.errors import FpcadError, SpecError
+from fpcad.summary import print_design, print_run
+from fpcad.spec import Spec, find_faults, json_schema, load_spec, write_new
+
+app = typer.Typer(
+    name="fpcad",
+    help=(
+        "From one YAML file to a tool-wielding robotic hand on the wire.\n\n"
+        "`fpcad new NAME` writes a spec to start from, `fpcad design NAME` makes the hand: it solves "
+        "the foundational poses, samples designs, traces wielding paths, selects one hand and "
+        "exports parts, URDF and trajectories to build/NAME. The stages are verbs of their own; "
+        "each makes what it needs and skips what is up to date, and after an interruption goes on "
+        "where it was."
+    ),
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+DESIGNS = Path("designs")
+INTERRUPTED = 130
+
+Design = Annotated[
+    str, typer.Argument(metavar="NAME", help="A design: `clay` for designs/clay.yaml, or a file.")
+]
+BuildFolder = Annotated[
+    Path, typer.Option("--build", metavar="DIR", help="Folder for everything that is made.")
+]
+WorkerCount = Annotated[
+    int, typer.Option("--workers", "-j", min=0, help="Processes side by side; 0: one for each core.")
+]
+Force = Annotated[bool, typer.Option("--force", help="Make the last stage again.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout.")]
+
+
+@app.callback()
+def options(
+    verbose: Annotated[
+        int, typer.Option("--verbose", "-v", count=True, help="Log more; twice for everything.")
+    ] = 0,
+) -> None:
+    start_logging(verbose)
+
+
+@app.command()
+def new(name: Annotated[str, typer.Argument(help="Name of the new design.")]) -> None:
+    """Write designs/NAME.yaml, a commented spec to start from."""
+    typer.echo(f"{write_new(name, DESIGNS)}: edit it, then run `fpcad design {name}`")
+
+
+@app.command()
+def validate(
+    spec: Annotated[str, typer.Argument(metavar="SPEC", help="A design's name or file.")],
+    as_json: AsJson = False,
+) -> None:
+    """Check a spec; tell all of its faults with their lines. Exit code 0 or 2."""
+    faults = find_faults(spec_file(spec))
+    if as_json:
+        typer.echo(json.dumps([asdict(fault) for fault in faults], indent=2, default=str))
+    elif faults:
+        raise SpecError("\n".join(map(str, faults)))
+    else:
+        typer.echo(f"{spec_file(spec)}: valid")
+    if faults:
+        raise typer.Exit(SpecError.exit_code)
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON schema of specs, for editors."""
+    typer.echo(json.dumps(json_schema(), indent=2))
+
+
+@app.command()
+def design(
+    name: Design,
+    build: BuildFolder = Path("build"),
+    workers: WorkerCount = 0,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> None:
+    """Make the whole hand: solve, sample, evaluate, select, export."""
+    _run("export", name, build, workers, force, as_json)
+
+
+@app.command()
+def solve(
+    name: Design,
+    build: BuildFolder = Path("build"),
+    workers: WorkerCount = 0,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> None:
+    """Solve the foundational poses of the first hand."""
+    _run("solve", name, build, workers, force, as_json)
+
+
+@app.command()
+def sample(
+    name: Design,
+    build: BuildFolder = Path("build"),
+    workers: WorkerCount = 0,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> None:
+    """Sample hands that reach all poses: candidates.parquet, calls.parquet."""
+    _run("sample", name, build, workers, force, as_json)
+
+
+@app.command()
+def evaluate(
+    name: Design,
+    build: BuildFolder = Path("build"),
+    workers: WorkerCount = 0,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> None:
+    """Trace each candidate's wielding paths and measure them."""
+    _run("evaluate", name, build, workers, force, as_json)
+
+
+@app.command()
+def select(
+    name: Design,
+    build: BuildFolder = Path("build"),
+    workers: WorkerCount = 0,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> None:
+    """Score the candidates and choose one: metrics.parquet, paths.parquet, selected.json."""
+    _run("select", name, build, workers, force, as_json)
+
+
+@app.command()
+def export(
+    name: Design,
+    build: BuildFolder = Path("build"),
+    workers: WorkerCount = 0,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> None:
+    """Write the chosen hand's parts, URDF, transmission and trajectories."""
+    _run("export", name, build, workers, force, as_json)
+
+
+@app.command("run-trajectory")
+def run_trajectory(
+    name: Design,
+    pose: Annotated[str, typer.Option(help="Pose whose trajectory is run.")],
+    port: Annotated[
+        str,
+        typer.Option(
+            help="Serial port of the controller, as /dev/ttyUSB0; `sim` starts a simulated one."
+        ),
+    ],
+    build: BuildFolder = Path("build"),
+    speed: Annotated[float, typer.Option(min=0.01, max=1.0, help="Factor of the speed.")] = 1.0,
+    loop: Annotated[int, typer.Option(min=1, help="How often to run it.")] = 1,
+    to_start: Annotated[
+        bool, typer.Option("--to-start", help="Go to the first posture slowly, however far.")
+    ] = False,
+    clear: Annotated[bool, typer.Option("--clear", help="Unlatch a held controller.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Check only, send nothing.")] = False,
+    log: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="CSV file for all telemetry.")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Stream a trajectory to the motor controllers and report how well it was followed.
+
+    Ctrl-C slows down along the path and holds; twice turns the torque off, and the tool drops.
+    """
+    from fpcad.drive import drive
+
+    spec = load_spec(spec_file(name))
+    report = drive(spec, build / spec.name, pose, port, speed, loop, to_start, clear, dry_run, log)
+    if as_json:
+        typer.echo(json.dumps(asdict(report), indent=2))
+    else:
+        print_run(report)
+
+
+def spec_file(name: str) -> Path:
+    """File of a design that is given by name or by path."""
+    named = DESIGNS / f"{name}.yaml"
+    is_path = name.endswith((".yaml", ".yml")) or "/" in name
+    return Path(name) if is_path else named
+
+
+def main() -> None:
+    """Entry point: errors become one message and an exit code."""
+    try:
+        app()
+    except FpcadError as error:
+        console.print(f"[red]error:[/red] {escape(str(error))}", soft_wrap=True, highlight=False)
+        sys.exit(error.exit_code)
+    except KeyboardInterrupt:
+        console.print("interrupted; finished work is kept, the same command goes on")
+        sys.exit(INTERRUPTED)
+
+
+Verb = Literal["solve", "sample", "evaluate", "select", "export"]
+
+
+def _run(
+    last: Verb, name: str, folder: Path, workers: int, force: bool, as_json: bool
+) -> None:
+    from fpcad.pipeline import Build, run_stages
+    from fpcad.workers import available_cores
+
+    spec: Spec = load_spec(spec_file(name))
+    count = workers or available_cores()
+    build = Build(spec, folder / spec.name, count, ConsoleReporter())
+    manifest: dict[str, Any] = run_stages(build, last, force)
+    if as_json:
+        typer.echo(json.dumps(manifest, indent=2))
+    else:
+        print_design(build.folder, manifest, last)

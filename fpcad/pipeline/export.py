@@ -1,0 +1,69 @@
+"""Stage export: parts, description and trajectories of the chosen hand."""
+
+from __future__ import annotations
+
+
+import numpy as np
+import pyarrow.compute as pc
+
+from fpcad.make.hand import make_hand
+from fpcad.make.trajectory import Trajectory, build_trajectory
+from fpcad.make.trajectory_file import write_trajectory
+from fpcad.model.geometry import hand_geometry
+from fpcad.model.transmission import hand_transmission, single_axis_speed_limits
+from fpcad.pipeline.select import PATHS, SELECTED
+from fpcad.pipeline.stage import Build, Counts, Stage
+from fpcad.pipeline.tables import read_path
+from fpcad.sample.space import design_space
+from fpcad.spec.catalogue import motor
+from fpcad.store import read_json, read_table
+from fpcad.wield.evaluate import contact_projector
+from fpcad.wield.path import WieldingPath
+
+PART_STEPS = 8
+"""About how many steps `make_hand` tells, for the bar."""
+
+
+def export(build: Build) -> Counts:
+    """Write everything that is printed, simulated or run of the chosen hand."""
+    space, selected = design_space(build.spec.hand), read_json(build.folder / SELECTED)
+    named = np.array([selected["design"][name] for name in space.names])
+    design = space.internal(named)
+    geometry = hand_geometry(build.bench.template, design)
+    with build.reporter.stage("trajectories", len(build.spec.poses)) as bar:
+        for path in chosen_paths(build, int(selected["id"])):
+            trajectory = make_trajectory(build, design, path)
+            write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json")
+            bar.advance(1, f"{path.pose}: {trajectory.duration_s:.1f} s")
+    with build.reporter.stage("parts", PART_STEPS) as bar:
+        files = make_hand(
+            build.spec, geometry, build.folder, lambda step: bar.advance(1, step)
+        )
+    return {"files": len(files) + len(build.spec.poses), "selected": int(selected["id"])}
+
+
+def chosen_paths(build: Build, candidate: int) -> list[WieldingPath]:
+    """The paths of one candidate, in the order of the spec's poses."""
+    table = read_table(build.folder / PATHS)
+    rows = table.filter(pc.field("id") == candidate)
+    return [
+        read_path(rows.filter(pc.field("pose") == pose), kernels.layout)
+        for pose, kernels in build.bench.kernels.items()
+    ]
+
+
+def make_trajectory(build: Build, design: np.ndarray, path: WieldingPath) -> Trajectory:
+    """The trajectory along one path of a hand with design (n_d,) [mm, rad]."""
+    spec, geometry = build.spec, hand_geometry(build.bench.template, design)
+    A = hand_transmission(spec.motors.transmission, len(geometry.fingers))
+    speed = single_axis_speed_limits(A, motor(spec.motors.type).no_load_speed_rad_s)
+    projector = contact_projector(build.bench, design, path)
+    return build_trajectory(path, spec, geometry, projector, speed)
+
+
+EXPORT = Stage(
+    "export",
+    ("name", "motors", "motion", "print"),
+    ("hand/transmission.yaml", "parts/bom.csv", "trajectories"),
+    export,
+)

@@ -1,0 +1,115 @@
+"""What a stage is: a part of the build with named inputs, run again only when they change."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Protocol
+
+from fpcad.solve.attempt import Workbench, open_workbench
+from fpcad.spec.dump import spec_hash
+from fpcad.spec.schema import Spec
+from fpcad.store import Shards
+from fpcad.workers import Workers, available_cores
+
+Counts = dict[str, int | float | str]
+"""What a stage tells of itself in the manifest."""
+
+
+class Progress(Protocol):
+    """A stage's bar."""
+
+    def advance(self, steps: int = 1, note: str = "") -> None:
+        """Count finished steps; `note` says how it goes."""
+        ...
+
+
+class Reporter(Protocol):
+    """Where stages tell what they do; the command line draws bars."""
+
+    def stage(self, title: str, total: int | None) -> AbstractContextManager[Progress]:
+        """Open a bar over `total` steps, or over an unknown number."""
+        ...
+
+    def note(self, text: str) -> None:
+        """Tell one line."""
+        ...
+
+
+class SilentReporter:
+    """Tells nothing."""
+
+    def stage(self, title: str, total: int | None) -> AbstractContextManager[Progress]:
+        """A bar that is not drawn."""
+        return nullcontext(self)
+
+    def advance(self, steps: int = 1, note: str = "") -> None:
+        """Nothing."""
+
+    def note(self, text: str) -> None:
+        """Nothing."""
+
+
+@dataclass
+class Build:
+    """One design's folder with everything that is made of its spec."""
+
+    spec: Spec
+    folder: Path
+    """build/NAME."""
+    workers: int = field(default_factory=available_cores)
+    reporter: Reporter = field(default_factory=SilentReporter)
+    keys: dict[str, str] = field(default_factory=dict)
+    """Hash of each stage's inputs."""
+    _bench: Workbench | None = None
+
+    @property
+    def kernel_cache(self) -> Path:
+        """Compiled formulas, shared by all designs of a build folder."""
+        return self.folder.parent / ".kernels"
+
+    @property
+    def bench(self) -> Workbench:
+        """Formulas of all poses, opened at first use."""
+        if self._bench is None:
+            opened = partial(open_workbench, self.spec, self.kernel_cache)
+            with self.reporter.stage("compiling formulas", None):
+                self._bench = opened()
+        return self._bench
+
+    def open_workers(self) -> Workers[Workbench]:
+        """Processes that each hold the formulas, which are compiled here before."""
+        bench = self.bench
+        if self.workers == 1:
+            return Workers(lambda: bench, 1)
+        return Workers(partial(open_workbench, self.spec, self.kernel_cache), self.workers)
+
+    def shards(self, stage: str) -> Shards:
+        """Running results of a stage; their folder is named after its inputs' hash."""
+        return Shards(self.folder / "store" / f"{stage}-{self.keys[stage][:12]}")
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A part of the build.
+
+    Attributes:
+        name: verb of the command line.
+        sections: parts of the spec that the stage reads itself.
+        outputs: files in the build folder without which it is not up to date.
+        run: makes the outputs and tells counts.
+    """
+
+    name: str
+    sections: tuple[str, ...]
+    outputs: tuple[str, ...]
+    run: Callable[[Build], Counts]
+
+    def key(self, spec: Spec, before: str, version: str) -> str:
+        """Hash of everything that the stage's results depend on."""
+        text = "\0".join([self.name, version, before, spec_hash(spec, *self.sections)])
+        return hashlib.sha256(text.encode()).hexdigest()
