@@ -63,9 +63,7 @@ def grow(
         first = len(calls)
         proposals = [propose(tree, settings, first + i) for i in range(settings.batch)]
         far = [p for p in proposals if not _too_close(tree, settings, p)]
-        states = [
-            (p, {n: s.y for n, s in tree.candidates[p.parent].poses.items()}) for p in far
-        ]
+        states = [(p, {n: s.y for n, s in tree.candidates[p.parent].poses.items()}) for p in far]
         attempts = {p.call: a for p, a in zip(far, solve(states), strict=True)}
         batch: list[Call] = []
         for proposal in proposals:
@@ -108,9 +106,7 @@ def _judge(tree: Tree, settings: Sampling, proposal: Proposal, attempt: Attempt 
         return Call(proposal, TOO_CLOSE, -1)
     if not attempt.succeeded:
         return Call(proposal, attempt.reason, -1)
-    candidate = Candidate(
-        len(tree.candidates), proposal.parent, proposal.named, attempt.poses
-    )
+    candidate = Candidate(len(tree.candidates), proposal.parent, proposal.named, attempt.poses)
     tree.add(candidate)
     return Call(proposal, ACCEPTED, candidate.id)
 
