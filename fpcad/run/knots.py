@@ -14,8 +14,11 @@ from fpcad.run.quintic import Array, Knots, evaluate
 
 LONGEST_STEP_S = 0.040
 """25 knots a second: 164 bytes each, 36 % of 115200 baud."""
-SHORTEST_STEP_S = 0.020
-"""50 knots a second: the most that a 115200 baud line carries with room for repeats."""
+SHORTEST_STEP_S = 0.004
+"""One tick of the controller."""
+WINDOW_KNOTS, WINDOW_S = 32, 0.8
+"""So many knots, a controller's buffer, must last so long: 40 a second, what a 115200 baud line
+carries with one knot on the way at a time and room for repeats."""
 WIRE_TOLERANCE_RAD = 1e-4
 """Largest error that thinning a dense file may make; 5 um at 50 mm."""
 
@@ -37,21 +40,21 @@ class WireKnots:
 def to_wire(knots: Knots) -> WireKnots:
     """Knots as sent.
 
-    A file's own knots are kept where they are at least 20 ms apart, and segments longer than 40 ms
-    are divided; both leave the motion as it is but for rounding to 1e-6 rad. A denser file is
-    sampled anew, every 40 ms if that is within 1e-4 rad, else every 20 ms.
+    The file's own knots are kept, and segments longer than 40 ms are divided; both leave the motion
+    as it is but for rounding to 1e-6 rad. A file too dense for the line is sampled anew, evenly.
     """
-    if np.diff(knots.time_s).min() >= SHORTEST_STEP_S * (1 - 1e-9):
-        return _rounded(knots, _divided(knots.time_s))
-    for step in (LONGEST_STEP_S, SHORTEST_STEP_S):
-        count = max(int(np.ceil(knots.time_s[-1] / step)), 1)
-        wire = _rounded(knots, np.linspace(0.0, knots.time_s[-1], count + 1))
-        if wire.error_rad <= WIRE_TOLERANCE_RAD:
-            return wire
-    raise TrajectoryError(
-        f"knots every {SHORTEST_STEP_S * 1e3:.0f} ms miss the trajectory by {wire.error_rad:.2g} "
-        f"rad; {WIRE_TOLERANCE_RAD:g} is allowed: run it slower or smooth it"
-    )
+    time_s = _divided(knots.time_s)
+    if _fits_line(time_s):
+        return _rounded(knots, time_s)
+    count = max(int(np.ceil(knots.time_s[-1] / (WINDOW_S / WINDOW_KNOTS))), 1)
+    wire = _rounded(knots, np.linspace(0.0, knots.time_s[-1], count + 1))
+    if wire.error_rad > WIRE_TOLERANCE_RAD:
+        raise TrajectoryError(
+            f"{WINDOW_KNOTS / WINDOW_S:.0f} knots a second, all that the line carries, miss the "
+            f"trajectory by {wire.error_rad:.2g} rad; {WIRE_TOLERANCE_RAD:g} is allowed: "
+            "run it slower, or smooth it"
+        )
+    return wire
 
 
 def from_wire(messages: tuple[Knot, ...]) -> Knots:
@@ -83,6 +86,12 @@ def approach(present_rad: Array, knots: Knots, limits: JointLimits, share: float
         np.vstack([still, knots.velocity]),
         np.vstack([still, knots.acceleration]),
     )
+
+
+def _fits_line(time_s: Array) -> bool:
+    """Whether knots at these times (N,) are neither too close nor too many."""
+    spans = time_s[WINDOW_KNOTS:] - time_s[:-WINDOW_KNOTS]
+    return bool(np.diff(time_s).min() >= SHORTEST_STEP_S and (spans >= WINDOW_S).all())
 
 
 def _divided(time_s: Array) -> Array:

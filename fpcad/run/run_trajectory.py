@@ -13,7 +13,7 @@ from fpcad.run.driver import Driver, Sample, Watch
 from fpcad.run.errors import PortMissing, StartTooFar
 from fpcad.run.firmware import FirmwareDriver
 from fpcad.run.interrupt import counted_interrupts
-from fpcad.run.knots import Array, approach, to_wire
+from fpcad.run.knots import Array, approach, from_wire, to_wire
 from fpcad.run.limits import JointLimits
 from fpcad.run.port import Transport, open_port
 from fpcad.run.quintic import Knots
@@ -130,7 +130,8 @@ def follow(
 
 def _planned(trajectory_file: Path, limits: JointLimits, speed: float, loops: int) -> Knots:
     once = slowed(in_order(read_trajectory(trajectory_file), limits), speed)
-    require_within(once, limits)
+    # What counts is what is sent: the controller will check the same segments again.
+    require_within(from_wire(to_wire(once).messages), limits)
     return repeated(once, loops)
 
 

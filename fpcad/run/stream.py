@@ -177,14 +177,14 @@ class KnotStream:
     def _hold(self) -> NoReturn:
         """Stop along the path and wait until the controller says that the joints stand."""
         deadline = self._link.clock() + _STOP_PATIENCE_S
-        told_at = float("-inf")
+        told, told_at = None, float("-inf")
         while self._link.clock() < deadline:
-            stop, state = (
-                (Estop(), State.ESTOP) if self._watch.stops() > 1 else (Hold(), State.HOLD)
-            )
-            if self._link.clock() - told_at >= _STOP_PERIOD_S or state is State.ESTOP:
-                told_at = self._link.clock()
-                self._link.send_now(stop)
+            command = Estop if self._watch.stops() > 1 else Hold
+            now = self._link.clock()
+            # Stops may get lost, so they are repeated; both are idempotent.
+            if command is not told or now - told_at >= _STOP_PERIOD_S:
+                told, told_at = command, now
+                self._link.send_now(command())
             for msg in self._link.poll():
                 if isinstance(msg, Telemetry):
                     self._note(msg)

@@ -37,13 +37,17 @@ class VirtualLine:
     on_tick: Callable[[VirtualLine], None] | None = None
     log: list[bytes] = field(default_factory=list)
 
+    def __post_init__(self) -> None:
+        self._to_device, self._backlog, self._to_host = bytearray(), bytearray(), bytearray()
+
     def clock(self) -> float:
         return self.now_s
 
     def write(self, data: bytes) -> None:
         self.log.append(data)
         if self.connected:
-            self.device.receive(self.to_device(data))
+            self._to_device += self.to_device(data)
+            self._deliver(None if self.baud_rate is None else 0)
 
     def read(self) -> bytes:
         data = self._collect()
@@ -53,8 +57,11 @@ class VirtualLine:
         return data
 
     def let_pass(self, seconds: float) -> None:
+        """Time passes; at a baud rate, each tick carries its share of bytes each way."""
+        share = None if self.baud_rate is None else self.baud_rate // 10 // TICK_HZ
         for _ in range(max(round(seconds * TICK_HZ), 1)):
             self.now_s += 1 / TICK_HZ
+            self._deliver(share)
             self.device.tick()
             if self.on_tick is not None:
                 self.on_tick(self)
@@ -62,9 +69,22 @@ class VirtualLine:
     def close(self) -> None:
         self.connected = False
 
+    def _deliver(self, limit: int | None) -> None:
+        """Carry up to `limit` bytes each way."""
+        self.device.receive(bytes(self._to_device[:limit]))
+        del self._to_device[:limit]
+        output = self.device.take_output()
+        if self.connected and output:
+            self._backlog += self.to_host(output)
+        self._to_host += self._backlog[:limit]
+        del self._backlog[:limit]
+
     def _collect(self) -> bytes:
-        data = self.device.take_output()
-        return self.to_host(data) if data and self.connected else b""
+        if self.baud_rate is None:
+            self._deliver(None)
+        data = bytes(self._to_host)
+        self._to_host.clear()
+        return data
 
 
 def bit_flips(rate: float, seed: int) -> Damage:

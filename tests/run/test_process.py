@@ -1,0 +1,169 @@
+"""The simulated controller as a process behind a pseudo terminal, in real time."""
+
+import csv
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from fpcad.run.errors import (
+    ControllerFault,
+    ControllerReset,
+    ControllerSilent,
+    HeldByUser,
+    LinkLost,
+    StartTooFar,
+)
+from fpcad.run.messages import State
+from fpcad.run.run_trajectory import run_trajectory
+from fpcad.run.sim.controller import TICK_HZ
+from fpcad.run.sim.spawn import Mishap, simulated_controller
+from tests.run.fixtures import hand_limits, swing, write_trajectory
+from tests.run.proxy import damaged_port
+from tests.run.virtual import bit_flips, lost_bytes
+
+START = swing().position[0]
+
+
+def wait_until(condition, patience_s=10.0):
+    deadline = time.monotonic() + patience_s
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def is_gone(pid):
+    try:
+        with open(f"/proc/{pid}/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] == "Z"
+    except FileNotFoundError:
+        return True
+
+
+def test_the_simulated_hand_follows_and_leaves_a_table(tmp_path):
+    log, seen = tmp_path / "log.csv", []
+    file = write_trajectory(tmp_path)
+    report = run_trajectory(file, hand_limits(), "sim", log=log, on_progress=seen.append)
+    assert report.final_state == "READY" and report.knots == 61
+    assert report.seconds == pytest.approx(2.0)
+    assert 0 < report.rms_error_all_rad <= report.max_error_all_rad < 0.005
+    assert report.wire_error_rad < 1e-6
+    assert seen[-1].path_s == pytest.approx(2.0) and seen[-1].knots_sent == 61
+    rows = list(csv.DictReader(log.open()))
+    running = [row for row in rows if row["state"] == "RUNNING"]
+    errors = [
+        abs(float(row["thumb_ip_flex_position_rad"]) - float(row["thumb_ip_flex_command_rad"]))
+        for row in running
+    ]
+    assert len(running) == report.samples
+    assert max(errors) == pytest.approx(report.max_error_rad[2])
+
+
+def test_a_fast_clock_shortens_a_long_run(tmp_path):
+    file = write_trajectory(tmp_path, swing(20.0, 501))
+    begun = time.monotonic()
+    report = run_trajectory(file, hand_limits(), "sim:20", loops=2)
+    assert report.seconds == pytest.approx(40.0) and report.knots == 1001
+    assert time.monotonic() - begun < 20
+
+
+def test_a_far_hand_moves_to_the_start_when_asked(tmp_path):
+    file = write_trajectory(tmp_path)
+    report = run_trajectory(file, hand_limits(), "sim:10", move_to_start=True)
+    assert report.seconds > 3.0 and report.max_error_all_rad < 0.005
+    with simulated_controller(hand_limits(), START - 0.1) as device, pytest.raises(StartTooFar):
+        run_trajectory(file, hand_limits(), device.port)
+
+
+@pytest.mark.parametrize("damage", [lost_bytes, bit_flips])
+def test_a_bad_line_through_pseudo_terminals_is_overcome(tmp_path, damage):
+    file = write_trajectory(tmp_path)
+    with (
+        simulated_controller(hand_limits(), START) as device,
+        damaged_port(device.port, damage(5e-4, 1), damage(5e-4, 2)) as port,
+    ):
+        report = run_trajectory(file, hand_limits(), port)
+    assert report.final_state == "READY"
+    assert report.resends + report.bad_frames > 0
+
+
+@pytest.mark.parametrize(
+    ("mishap", "error"),
+    [
+        (Mishap("silence", 1.0), LinkLost),
+        (Mishap("garbage", 1.0), LinkLost),
+        (Mishap("reset", 1.0), ControllerReset),
+        (Mishap("jam", 0.5, joint=2), ControllerFault),
+        (Mishap("silence", 0.0), ControllerSilent),
+        (Mishap("garbage", 0.0), ControllerSilent),
+    ],
+    ids=lambda value: f"{value.kind} at {value.at_s}" if isinstance(value, Mishap) else None,
+)
+def test_mishaps_of_the_controller_have_names(tmp_path, mishap, error):
+    file = write_trajectory(tmp_path, swing(2.0, 61, amplitude=0.25))
+    with simulated_controller(hand_limits(), START, mishaps=[mishap]) as device:
+        with pytest.raises(error):
+            run_trajectory(file, hand_limits(), device.port, patience_s=0.5)
+        pid = device.pid
+    assert is_gone(pid)
+
+
+def test_a_controller_that_dies_in_mid_run_is_noticed(tmp_path):
+    file = write_trajectory(tmp_path)
+    with simulated_controller(hand_limits(), START) as device:
+
+        def kill(progress):
+            if progress.path_s > 0.3:
+                os.kill(device.pid, signal.SIGKILL)
+
+        with pytest.raises(LinkLost, match="the line broke|nothing heard"):
+            run_trajectory(file, hand_limits(), device.port, on_progress=kill)
+
+
+def test_ctrl_c_holds(tmp_path):
+    def interrupt(progress):
+        if 0.5 < progress.path_s < 0.6 and progress.state == "RUNNING":
+            signal.raise_signal(signal.SIGINT)
+            progress_seen.append(progress)
+
+    progress_seen = []
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(HeldByUser):
+        run_trajectory(
+            write_trajectory(tmp_path),
+            hand_limits(),
+            "sim",
+            on_progress=lambda p: None if progress_seen else interrupt(p),
+        )
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.parametrize("phase_s", [0.1, 1.4, 2.6])
+def test_a_killed_host_leaves_joints_at_rest_and_no_process(tmp_path, phase_s):
+    host = subprocess.Popen(
+        [sys.executable, "-m", "tests.run.killed_host", str(tmp_path)],
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+    )
+    assert host.stdout is not None
+    simulator = int(host.stdout.readline())
+    while float(host.stdout.readline()) < phase_s:
+        pass
+    host.kill()
+    host.wait()
+    host.stdout.close()
+    wait_until(lambda: is_gone(simulator))
+    rows = np.load(tmp_path / "record.npz")["rows"]
+    time_s, state, rate, command = rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3:15]
+    assert state[-1] == State.HOLD and rate[-1] == 0
+    running = time_s[state == State.RUNNING]
+    # Half a second of silence since the last ping, then the time to slow down.
+    assert time_s[-1] - running[-1] < 0.2
+    assert running[-1] - running[0] < phase_s + 1.0
+    acceleration = np.abs(np.diff(command, 2, axis=0)).max() * TICK_HZ**2
+    assert acceleration <= hand_limits().acceleration_rad_s2[0] * 1.05
