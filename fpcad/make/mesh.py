@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import manifold3d
 import numpy as np
 import trimesh
+from numpy.typing import NDArray
 from trimesh.exchange.stl import export_stl
 
 from fpcad.errors import FpcadError
@@ -30,9 +31,19 @@ def mesh_of(name: str, solid: Solid, settings: Print) -> trimesh.Trimesh:
     mesh = trimesh.Trimesh([v.toTuple() for v in vertices], faces, process=False)
     mesh.merge_vertices(digits_vertex=MERGE_DIGITS)
     mesh.update_faces(mesh.nondegenerate_faces())
+    mesh.update_faces(~_folded(mesh))
     mesh.remove_unreferenced_vertices()
     _check(name, mesh)
     return mesh
+
+
+def _folded(mesh: trimesh.Trimesh) -> NDArray[np.bool_]:
+    """Triangles (n,) that lie back to back on another one: the kernel's mesher leaves such flaps,
+    which enclose nothing, along seams of thin slivers."""
+    _, which, counts = np.unique(
+        np.sort(mesh.faces, axis=1), axis=0, return_inverse=True, return_counts=True
+    )
+    return counts[which.ravel()] == 2
 
 
 def in_metres(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
