@@ -31,13 +31,13 @@ def segment_distance_squared(a: Segment, b: Segment) -> Expr:
         ca.fmin(_to_segment(a.start, b, vv), _to_segment(a.end, b, vv)),
         ca.fmin(_to_segment(b.start, a, uu), _to_segment(b.end, a, uu)),
     )
-    sine = uu * vv - uv * uv
+    normal = ca.cross(u, v)
+    sine = ca.sumsqr(normal)  # of the angle, squared; uu * vv - uv^2 would lose its digits
     crossing = sine > PARALLEL_SINE_SQUARED * uu * vv
     safe = ca.if_else(crossing, sine, 1)
     uw, vw = ca.dot(u, w), ca.dot(v, w)
     s, t = (uv * vw - vv * uw) / safe, (uu * vw - uv * uw) / safe
     inside = ca.logic_and(crossing, ca.logic_and(ca.fmin(s, t) >= 0, ca.fmax(s, t) <= 1))
-    normal = ca.cross(u, v)
     inner = ca.dot(w, normal) ** 2 / safe
     return ca.if_else(inside, inner, ends)
 
