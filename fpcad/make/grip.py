@@ -51,13 +51,41 @@ class Grip:
             joints: (N, 3 n_fingers) [rad], finger by finger.
             angles: (N,) tool angle [rad].
         """
+        axes = [link_axis(self.geometry, contact, joints) for contact in self.contacts]
+        radii = [self.geometry.radius_mm] * len(axes)
+        return self._distances(axes, radii, angles)
+
+    def clearances(self, joints: Array, angles: Array) -> Array:
+        """Clearance (N, n) [mm] of the tool to every other link and to the palm's primitives."""
+        others = [
+            link
+            for finger in self.geometry.fingers
+            for link in (ContactLink(finger, "proximal"), ContactLink(finger, "distal"))
+            if link not in self.contacts
+        ]
+        axes = [link_axis(self.geometry, link, joints) for link in others]
+        shape = (len(joints), 3)
+        axes += [
+            (np.broadcast_to(s.start_mm, shape), np.broadcast_to(s.end_mm, shape))
+            for s in self.geometry.palm
+        ]
+        radii = [self.geometry.radius_mm] * len(others)
+        return self._distances(axes, radii + [s.radius_mm for s in self.geometry.palm], angles)
+
+    def errors(self, joints: Array, angles: Array) -> Array:
+        """How far each state (N,) [mm] is from contact where it should be and only there."""
+        gap = np.abs(self.gaps(joints, angles)).max(axis=1)
+        return np.maximum(gap, -self.clearances(joints, angles).min(axis=1))
+
+    def _distances(
+        self, axes: list[tuple[Array, Array]], radii: list[float], angles: Array
+    ) -> Array:
         origin, orientation = self.tool_poses(angles)
         along = orientation.apply([1.0, 0.0, 0.0])
         back, tip = origin + self.tool.back_mm * along, origin + self.tool.tip_mm * along
-        radii = self.geometry.radius_mm + self.tool.radius_mm
         columns = [
-            segment_distance(*link_axis(self.geometry, c, joints), back, tip) - radii
-            for c in self.contacts
+            segment_distance(*axis, back, tip) - radius - self.tool.radius_mm
+            for axis, radius in zip(axes, radii, strict=True)
         ]
         return np.stack(columns, axis=1)
 
@@ -79,7 +107,7 @@ def link_axis(geometry: HandGeometry, contact: ContactLink, joints: Array) -> tu
 
 
 def segment_distance(start_a: Array, end_a: Array, start_b: Array, end_b: Array) -> Array:
-    """Distance (N,) of N pairs of segments with ends (N, 3); lengths must not be zero.
+    """Distance (N,) of N pairs of segments with ends (N, 3), which may be points.
 
     The least distance is either between the two lines, where both feet lie on the segments, or from
     an end of one segment to the other segment.
@@ -107,7 +135,8 @@ def segment_distance(start_a: Array, end_a: Array, start_b: Array, end_b: Array)
 
 def _point_distance(point: Array, start: Array, end: Array) -> Array:
     along = end - start
-    share = np.clip(_dot(point - start, along) / _dot(along, along), 0.0, 1.0)
+    length = np.maximum(_dot(along, along), np.finfo(float).tiny)
+    share = np.clip(_dot(point - start, along) / length, 0.0, 1.0)
     return np.linalg.norm(point - start - share[:, None] * along, axis=1)
 
 

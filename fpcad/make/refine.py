@@ -24,10 +24,8 @@ Project = Callable[[float, Array], Array]
 
 CURVE_GAP_MM = 0.002
 """Gap beyond which a segment of the curve is split."""
-LIMIT_EXCESS_RAD = 2e-7
-"""Overshoot of a joint limit beyond which a segment of the curve is split."""
-MAX_SPLITS = 8
-"""How often a segment may be halved."""
+MAX_SPLITS = 12
+"""How often a segment may be halved: down to a few millionths of a radian at a kink."""
 
 
 @dataclass(frozen=True)
@@ -87,17 +85,17 @@ def contact_curve(leg: Leg, grip: Grip, project: Project, limits: Array) -> Cont
     guide = guide_spline(leg)
     knots = np.unique(guide.t)
     cell = float(knots[1] - knots[0])
-    exact = np.vstack([leg.joints[0], _projected(leg, guide, project, knots[1:-1]), leg.joints[-1]])
+    inner = _projected(leg, guide, project, grip, knots[1:-1])
+    exact = np.vstack([leg.joints[0], inner, leg.joints[-1]])
     for _ in range(MAX_SPLITS):
-        curve = _through(knots, exact, guide)
-        middles = _faulty_middles(curve, knots, leg, grip, limits)
+        curve = _through(knots, exact, guide, limits)
+        middles = _faulty_middles(curve, knots, leg, grip)
         if not len(middles):
             return ContactCurve(float(knots[-1]), cell, curve)
         order = np.argsort(np.concatenate([knots, middles]), kind="stable")
-        exact = np.concatenate([exact, _projected(leg, guide, project, middles)])[order]
+        exact = np.concatenate([exact, _projected(leg, guide, project, grip, middles)])[order]
         knots = np.concatenate([knots, middles])[order]
-    angle = np.degrees(leg.direction * middles[0])
-    raise SolveError(f"no smooth motion in contact was found at a tool angle of {angle:.2f} deg")
+    raise _lost(leg, middles[0], "no smooth motion keeps contact")
 
 
 def limit_excess(joints: Array, limits: Array, leg: Leg) -> Array:
@@ -123,16 +121,53 @@ def guide_spline(leg: Leg) -> BSpline:
     return BSpline(knots, PchipInterpolator(turn, leg.joints)(greville), 3)
 
 
-def _projected(leg: Leg, guide: BSpline, project: Project, turns: Array) -> Array:
-    states = [project(float(leg.direction * s), guide(s)) for s in turns]
-    return np.reshape(states, (len(turns), leg.joints.shape[1]))
+def _projected(leg: Leg, guide: BSpline, project: Project, grip: Grip, turns: Array) -> Array:
+    """Exact postures (N, n_joints) at the turns; splitting cannot mend what is wrong with them."""
+    states = [project(float(leg.direction * turn), guide(turn)) for turn in turns]
+    states = np.reshape(states, (len(turns), leg.joints.shape[1]))
+    wrong = grip.errors(states, leg.direction * turns) > CURVE_GAP_MM
+    if wrong.any():
+        raise _lost(
+            leg, turns[wrong][0], "the posture next to the path is not in contact, or in the tool"
+        )
+    return states
 
 
-def _through(knots: Array, exact: Array, guide: BSpline) -> BPoly:
+def _lost(leg: Leg, turn: float, what: str) -> SolveError:
+    return SolveError(f"{what} at a tool angle of {np.degrees(leg.direction * turn):.2f} deg")
+
+
+def _through(knots: Array, exact: Array, guide: BSpline, limits: Array) -> BPoly:
     """Quintics with the guide's derivatives plus those of the corrections' local parabolas."""
     first, second = _parabola_derivatives(knots, exact - guide(knots))
-    rows = np.stack([exact, guide(knots, 1) + first, guide(knots, 2) + second], axis=1)
-    return BPoly.from_derivatives(knots, rows)
+    first, second = _kept_within(
+        limits, knots, exact, guide(knots, 1) + first, guide(knots, 2) + second
+    )
+    return BPoly.from_derivatives(knots, np.stack([exact, first, second], axis=1))
+
+
+def _kept_within(
+    limits: Array, knots: Array, exact: Array, first: Array, second: Array
+) -> tuple[Array, Array]:
+    """Derivatives as near to the given ones as the limits allow between the knots too.
+
+    A quintic whose Bernstein coefficients keep a limit keeps it. Next to a knot at a distance y
+    from a limit they are y + 2/5 h y' and y + 2/5 h y' + h^2 y''/20, on both sides (h of either
+    sign), beside one that lies between y and the first of the two. docs/trajectories.md.
+    """
+    step = np.diff(knots)[:, None]
+    after, before = np.vstack([step, step[-1:]]), np.vstack([step[:1], step])
+    low = np.maximum(exact - limits[0], 0.0)
+    high = np.maximum(limits[1] - exact, 0.0)
+    first = np.clip(
+        first,
+        -2.5 * np.minimum(low / after, high / before),
+        2.5 * np.minimum(low / before, high / after),
+    )
+    rise, fall = 0.4 * after * first, 0.4 * before * first
+    least = -20 * np.minimum((low + rise) / after**2, (low - fall) / before**2)
+    most = 20 * np.minimum((high - rise) / after**2, (high + fall) / before**2)
+    return first, np.clip(second, np.minimum(least, 0.0), np.maximum(most, 0.0))
 
 
 def _parabola_derivatives(x: Array, y: Array) -> tuple[Array, Array]:
@@ -149,12 +184,11 @@ def _parabola_derivatives(x: Array, y: Array) -> tuple[Array, Array]:
     return np.vstack([start, first, end]), np.vstack([second[:1], second, second[-1:]])
 
 
-def _faulty_middles(curve: BPoly, knots: Array, leg: Leg, grip: Grip, limits: Array) -> Array:
-    """Middles of the segments that lose contact or pass a joint limit."""
+def _faulty_middles(curve: BPoly, knots: Array, leg: Leg, grip: Grip) -> Array:
+    """Middles of the segments that lose contact, or let something else into the tool."""
     inside = np.linspace(0.0, 1.0, 9)[1:-1]
     turns = (knots[:-1, None] + np.diff(knots)[:, None] * inside).ravel()
     joints = curve(turns)
-    gap = np.abs(grip.gaps(joints, leg.direction * turns)).max(axis=1)
-    faulty = (gap > CURVE_GAP_MM) | (limit_excess(joints, limits, leg) > LIMIT_EXCESS_RAD)
+    faulty = grip.errors(joints, leg.direction * turns) > CURVE_GAP_MM
     segments = faulty.reshape(-1, len(inside)).any(axis=1)
     return (knots[:-1] + knots[1:])[segments] / 2

@@ -25,7 +25,7 @@ FILE_GAP_MM = 0.006
 """Gap between knots beyond which another knot is put between them."""
 LIMIT_EXCESS_RAD = 5e-7
 """Overshoot of a joint limit beyond which another knot is put between two."""
-MAX_SPLITS = 10
+MAX_SPLITS = 14
 """How often the time between two knots may be halved."""
 SLOWING_ROUNDS = 4
 """How often cells are slowed; what then remains slows the whole leg."""
@@ -177,9 +177,9 @@ def _in_contact(law: TimeLaw, cells: int, leg: Leg, grip: Grip, joint_range: Arr
         times = motion.time[:-1, None] + np.diff(motion.time)[:, None] * inside
         turns = motion.turn[:-1, None] + np.diff(motion.turn)[:, None] * inside
         joints = motion.joints()(times.ravel())
-        gaps = np.abs(grip.gaps(joints, leg.direction * turns.ravel())).max(axis=1)
+        errors = grip.errors(joints, leg.direction * turns.ravel())
         excess = limit_excess(joints, joint_range, leg)
-        faulty = (gaps > FILE_GAP_MM) | (excess > LIMIT_EXCESS_RAD)
+        faulty = (errors > FILE_GAP_MM) | (excess > LIMIT_EXCESS_RAD)
         faulty = faulty.reshape(times.shape).any(axis=1)
         if not faulty.any():
             return clock

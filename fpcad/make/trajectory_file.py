@@ -3,33 +3,21 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fpcad.errors import StoreError
+from fpcad.make.files import write_whole
 from fpcad.make.grip import ContactLink
 from fpcad.make.trajectory import ToolMotion, Trajectory
 
 
 def write_trajectory(trajectory: Trajectory, file: Path) -> None:
     """Write a trajectory; equal trajectories give equal bytes, and `file` is never half written."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(_document(trajectory), allow_nan=False, separators=(",", ":")) + "\n"
-    handle, name = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.chmod(name, 0o644)
-        os.replace(name, file)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    text = json.dumps(_document(trajectory), allow_nan=False, separators=(",", ":"))
+    write_whole(file, text + "\n")
 
 
 def read_trajectory(file: Path) -> Trajectory:

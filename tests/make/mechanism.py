@@ -42,10 +42,14 @@ class Mechanism:
 
     @cached_property
     def posture(self) -> Array:
-        """(12,) joints [rad] in exact contact at tool angle 0."""
-        fingers = TEMPLATES[self.spec.hand.template].fingers
+        """(12,) joints [rad] in exact contact at tool angle 0, free fingers curled out of the way."""
+        touching = {contact.finger for contact in self.grip.contacts}
         joints = self._initial.poses[self.pose].joints_deg
-        return self.project(0.0, np.radians(np.concatenate([joints[f] for f in fingers])))
+        given = [
+            joints[f] if f in touching else (100.0, 0.0, 0.0)
+            for f in TEMPLATES[self.spec.hand.template].fingers
+        ]
+        return self.project(0.0, np.radians(np.concatenate(given)))
 
     @cached_property
     def grip(self) -> Grip:

@@ -86,3 +86,15 @@ def test_segment_distance_in_special_positions(second, distance):
     c, d = (np.array([point], dtype=float) for point in second)
     assert segment_distance(start, end, c, d)[0] == pytest.approx(distance, abs=1e-9)
     assert segment_distance(c, d, start, end)[0] == pytest.approx(distance, abs=1e-9)
+
+
+def test_clearance_is_asked_of_all_that_may_not_touch():
+    hand = mechanism("carve")
+    joints, still = hand.posture[None], np.zeros(1)
+    clearances = hand.grip.clearances(joints, still)
+    assert clearances.shape == (1, 8 - 3 + len(hand.geometry.palm))
+    assert clearances.min() > 0 and hand.grip.errors(joints, still) < 1e-9
+    straightened = joints.copy()
+    straightened[0, 9:] = np.radians([20, 6, 0])  # the free ring finger, where the tool will be
+    reached = [float(hand.grip.clearances(straightened, np.array([a])).min()) for a in (-0.4, 0.4)]
+    assert reached[0] > 0 > -1 > reached[1]

@@ -78,8 +78,19 @@ def test_path_without_a_state_at_the_pose_is_refused(kinked: Mechanism):
 
 def test_projection_that_misses_contact_is_reported(kinked: Mechanism):
     leg = legs(kinked.path(0, 5))[0]
-    with pytest.raises(SolveError, match=r"no smooth motion in contact .* tool angle of"):
+    with pytest.raises(SolveError, match="not in contact, or in the tool at a tool angle of"):
         contact_curve(leg, kinked.grip, lambda _, guess: guess + 1e-3, kinked.limits)
+
+
+def test_posture_with_a_finger_in_the_tool_is_reported(kinked: Mechanism):
+    def with_straight_ring(tool_angle, guess):
+        joints = kinked.project(tool_angle, guess)
+        joints[9:] = np.radians([-4.8, 3.4, 0])
+        return joints
+
+    leg = legs(kinked.path(25, 0))[0]
+    with pytest.raises(SolveError, match="not in contact, or in the tool at a tool angle of"):
+        contact_curve(leg, kinked.grip, with_straight_ring, kinked.limits)
 
 
 def test_failure_of_the_projection_reaches_the_caller(kinked: Mechanism):

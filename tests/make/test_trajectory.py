@@ -45,7 +45,7 @@ CASES = {
         mechanism("carve", mcp_abd=(-5, 6)), joint_speed_deg_s=15, joint_acceleration_deg_s2=40
     ),
     "four contacts": mechanism("press"),
-    "tilted axis": turned_about(mechanism("poke"), TILTED),
+    "tilted axis": turned_about(mechanism("press"), TILTED),
 }
 
 
