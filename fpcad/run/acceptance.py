@@ -68,10 +68,10 @@ def _rounding(step_s: float) -> tuple[float, float, float]:
     """How far rounding knots to counts can move a segment's position, velocity, acceleration.
 
     Half a count at both ends in each of the three numbers, times the largest value of the
-    Hermite basis functions' derivatives, rounded up.
+    Hermite basis functions' derivatives, rounded up; and as much for the limit itself.
     """
     return (
-        _COUNT * (1 + step_s),
+        _COUNT * (2 + step_s),
         _COUNT * (2 / step_s + 2 + step_s),
         _COUNT * (6 / step_s**2 + 6 / step_s + 2),
     )

@@ -56,8 +56,9 @@ class FirmwareDriver:
     def play(self, knots: Knots, watch: Watch) -> Played:
         """Stream the knots; docs/link.md tells how."""
         names = self._limits.names
-        wire = to_wire(knots)
-        return KnotStream(self._link, self._welcome.buffer_knots, names, wire, watch).play()
+        buffer_knots = self._welcome.buffer_knots
+        wire = to_wire(knots, buffer_knots)
+        return KnotStream(self._link, buffer_knots, names, wire, watch).play()
 
     def _telemetry(self, *, until_acknowledged: bool = False) -> Telemetry:
         deadline = self._link.clock() + _ANSWER_S

@@ -12,13 +12,18 @@ from fpcad.run.limits import COUNTS_PER_UNIT, JointLimits, from_counts, to_count
 from fpcad.run.messages import Knot
 from fpcad.run.quintic import Array, Knots, evaluate
 
-LONGEST_STEP_S = 0.040
-"""25 knots a second: 164 bytes each, 36 % of 115200 baud."""
+BUFFER_KNOTS = 64
+"""Knots that a controller holds, unless it says otherwise; 10 kB."""
+LINE_KNOTS_PER_S = 40.0
+"""What a 115200 baud line carries: a knot has 164 bytes, and one is on the way at a time."""
+CUSHION_S = 0.5
+"""Motion that must be queued at any time, so that a stall of the host does no harm."""
+LONGEST_STEP_S = 0.1
 SHORTEST_STEP_S = 0.004
 """One tick of the controller."""
-WINDOW_KNOTS, WINDOW_S = 32, 0.8
-"""So many knots, a controller's buffer, must last so long: 40 a second, what a 115200 baud line
-carries with one knot on the way at a time and room for repeats."""
+THINNED_STEP_S = 0.03
+"""Spacing of the knots of a file that is too dense for the line."""
+_SHORTEST_APPROACH_S = 0.1
 WIRE_TOLERANCE_RAD = 1e-4
 """Largest error that thinning a dense file may make; 5 um at 50 mm."""
 
@@ -37,22 +42,22 @@ class WireKnots:
         return self.messages[-1].t_us
 
 
-def to_wire(knots: Knots) -> WireKnots:
-    """Knots as sent.
+def to_wire(knots: Knots, buffer_knots: int = BUFFER_KNOTS) -> WireKnots:
+    """Knots as sent to a controller that holds `buffer_knots`.
 
-    The file's own knots are kept, and segments longer than 40 ms are divided; both leave the motion
+    The file's own knots are kept, and segments longer than 0.1 s are divided; both leave the motion
     as it is but for rounding to 1e-6 rad. A file too dense for the line is sampled anew, evenly.
     """
     time_s = _divided(knots.time_s)
-    if _fits_line(time_s):
+    if _fits_line(time_s, buffer_knots):
         return _rounded(knots, time_s)
-    count = max(int(np.ceil(knots.time_s[-1] / (WINDOW_S / WINDOW_KNOTS))), 1)
+    count = max(int(np.ceil(knots.time_s[-1] / THINNED_STEP_S)), 1)
     wire = _rounded(knots, np.linspace(0.0, knots.time_s[-1], count + 1))
     if wire.error_rad > WIRE_TOLERANCE_RAD:
         raise TrajectoryError(
-            f"{WINDOW_KNOTS / WINDOW_S:.0f} knots a second, all that the line carries, miss the "
-            f"trajectory by {wire.error_rad:.2g} rad; {WIRE_TOLERANCE_RAD:g} is allowed: "
-            "run it slower, or smooth it"
+            f"the file has more knots than the line carries, and a knot every "
+            f"{THINNED_STEP_S * 1e3:.0f} ms misses its motion by {wire.error_rad:.2g} rad "
+            f"({WIRE_TOLERANCE_RAD:g} is allowed): run it slower, or smooth it"
         )
     return wire
 
@@ -76,7 +81,7 @@ def approach(present_rad: Array, knots: Knots, limits: JointLimits, share: float
     # A quintic from rest to rest peaks at 15/8 of its mean velocity and at 10/sqrt(3) d/T^2.
     by_velocity = 15 / 8 * distance / (share * limits.velocity_rad_s)
     by_acceleration = np.sqrt(10 / np.sqrt(3) * distance / (share * limits.acceleration_rad_s2))
-    duration = max(float(by_velocity.max()), float(by_acceleration.max()), LONGEST_STEP_S)
+    duration = max(float(by_velocity.max()), float(by_acceleration.max()), _SHORTEST_APPROACH_S)
     if distance.max() * COUNTS_PER_UNIT < 1:
         return knots
     still = np.zeros((1, len(present_rad)))
@@ -88,10 +93,21 @@ def approach(present_rad: Array, knots: Knots, limits: JointLimits, share: float
     )
 
 
-def _fits_line(time_s: Array) -> bool:
-    """Whether knots at these times (N,) are neither too close nor too many."""
-    spans = time_s[WINDOW_KNOTS:] - time_s[:-WINDOW_KNOTS]
-    return bool(np.diff(time_s).min() >= SHORTEST_STEP_S and (spans >= WINDOW_S).all())
+def _fits_line(time_s: Array, buffer_knots: int) -> bool:
+    """Whether a line keeps a cushion of motion queued when knots lie at these times (N,).
+
+    The buffer is full at the start; from then on a knot arrives when there is room for it and the
+    line has carried it.
+    """
+    if np.diff(time_s).min() < SHORTEST_STEP_S:
+        return False
+    arrived_s = 0.0
+    for i in range(buffer_knots, len(time_s)):
+        room_s = time_s[i - buffer_knots + 1]
+        arrived_s = max(arrived_s, room_s) + 1 / LINE_KNOTS_PER_S
+        if time_s[i - 1] - arrived_s < CUSHION_S:
+            return False
+    return True
 
 
 def _divided(time_s: Array) -> Array:
@@ -110,10 +126,13 @@ def _rounded(knots: Knots, time_s: Array) -> WireKnots:
     rows = (motion.position, motion.velocity, motion.acceleration)
     for row, given in zip(rows, (knots.position, knots.velocity, knots.acceleration), strict=True):
         row[-1] = given[-1]  # at rest exactly, though the last time was rounded
-    messages = tuple(
-        Knot(int(t), to_counts(p), to_counts(v), to_counts(a))
-        for t, p, v, a in zip(t_us, *rows, strict=True)
-    )
+    try:
+        messages = tuple(
+            Knot(int(t), to_counts(p), to_counts(v), to_counts(a))
+            for t, p, v, a in zip(t_us, *rows, strict=True)
+        )
+    except ValueError as error:
+        raise TrajectoryError(f"the trajectory's numbers are too large to send: {error}") from error
     wire = from_wire(messages)
     fine = np.linspace(0.0, min(wire.time_s[-1], knots.time_s[-1]), 8 * len(time_s) + 1)
     error = evaluate(wire, fine).position - evaluate(knots, fine).position

@@ -8,12 +8,12 @@ from fpcad.run.quintic import Knots, evaluate
 from tests.run.fixtures import hand_limits, swing
 
 
-@pytest.mark.parametrize("rows", [11, 35, 61, 77])
+@pytest.mark.parametrize("rows", [11, 35, 61, 77, 151])
 def test_the_wire_carries_the_motion_to_a_count(rows):
     wire = to_wire(swing(rows=rows))
     steps = np.diff([knot.t_us for knot in wire.messages])
     assert wire.error_rad < 1e-6
-    assert steps.max() <= 40_001
+    assert steps.max() <= 100_001
 
 
 def test_a_files_own_knots_are_kept():
@@ -31,16 +31,32 @@ def test_a_few_close_knots_are_kept():
 
 def test_a_file_too_dense_for_the_line_is_thinned_within_its_bound():
     wire = to_wire(swing(rows=1001))
-    assert len(wire.messages) == 81
+    assert len(wire.messages) == 68
     assert 0 < wire.error_rad < 1e-4
 
 
 def test_a_file_too_rough_to_thin_is_refused():
     knots = swing(rows=1001)
-    rough = knots.position + 1e-3 * np.random.default_rng(1).normal(size=knots.position.shape)
+    rough = knots.position + 2e-4 * np.random.default_rng(1).normal(size=knots.position.shape)
     rough[[0, -1]] = knots.position[[0, -1]]
     with pytest.raises(TrajectoryError, match="run it slower"):
         to_wire(Knots(knots.time_s, rough, knots.velocity, knots.acceleration))
+
+
+def test_numbers_that_the_wire_cannot_hold_are_refused():
+    knots = swing()
+    knots.velocity[5, 3] = 3000.0
+    with pytest.raises(TrajectoryError, match="too large to send"):
+        to_wire(knots)
+
+
+def test_a_burst_of_knots_is_kept_when_the_buffer_bridges_it():
+    knots = swing(4.0, 81)
+    times = np.unique(np.concatenate([knots.time_s, np.linspace(2.0, 2.4, 41)]))
+    m = evaluate(knots, times)
+    burst = Knots(times, m.position, m.velocity, m.acceleration)
+    assert len(to_wire(burst).messages) == len(times)
+    assert len(to_wire(burst, buffer_knots=24).messages) != len(times)
 
 
 def test_wire_knots_rest_at_both_ends_whatever_the_duration():

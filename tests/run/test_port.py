@@ -71,9 +71,7 @@ def test_a_line_that_breaks_is_named():
     port.close()
 
 
-@pytest.mark.parametrize("port", ["sim:", "sim:0", "sim:fast", "sim:1e9", "sim:nan"])
+@pytest.mark.parametrize("port", ["sim:0", "sim:fast", "sim:1e9", "sim:nan"])
 def test_a_simulated_port_has_a_sane_rate(tmp_path, port):
-    if port == "sim:":
-        pytest.skip("means the default rate")
     with pytest.raises(PortMissing, match="sim:RATE"):
         run_trajectory(write_trajectory(tmp_path), hand_limits(), port)

@@ -41,7 +41,7 @@ def test_extrema_lie_within_the_hull_and_are_sharp(seed):
         for joint in range(polynomials.shape[1]):
             values = np.polynomial.polynomial.polyval(s, polynomials[:, joint])
             least, greatest = extrema(polynomials[:, joint])
-            span = np.ptp(values)
+            span = float(np.ptp(values))
             assert low[joint] <= least + 1e-9 * span and greatest <= high[joint] + 1e-9 * span
             assert least == pytest.approx(values.min(), abs=1e-6 * span)
             assert greatest == pytest.approx(values.max(), abs=1e-6 * span)

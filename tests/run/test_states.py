@@ -53,12 +53,14 @@ COMMANDS = {
     Hello: Hello(),
 }
 
+RESTING = (knot(0), knot(1_000_000))
+
 
 class Bench:
     """A controller to which single messages are put."""
 
     def __init__(self, **changes):
-        self.device = controller(**changes)
+        self.device = controller(**{"buffer_knots": 32, **changes})
         self.seq = 0
         self.ask(Hello())
 
@@ -71,7 +73,7 @@ class Bench:
         (frame,) = FrameReader().feed(self.device.take_output())
         return decode(frame.kind, frame.payload)
 
-    def into(self, state, knots=(knot(0), knot(1_000_000))):
+    def into(self, state, knots=RESTING):
         """Bring a controller that is READY into a state by commands, or put it there."""
         if state in (State.ARMED, State.RUNNING):
             self.ask(Arm())

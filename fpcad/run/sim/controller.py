@@ -9,6 +9,7 @@ import numpy as np
 
 from fpcad.run.codec import CLASSES, KINDS, MalformedMessage, decode, encode
 from fpcad.run.framing import PROTOCOL_VERSION, Frame, FrameReader, encode_frame
+from fpcad.run.knots import BUFFER_KNOTS
 from fpcad.run.limits import JointLimits, to_counts
 from fpcad.run.messages import (
     Ack,
@@ -51,7 +52,7 @@ class ControllerSetup:
 
     limits: JointLimits
     boot_nonce: int
-    buffer_knots: int = 32
+    buffer_knots: int = BUFFER_KNOTS
     silence_us: int = 500_000
     """Silence of the host after which motion stops."""
     homed: bool = True

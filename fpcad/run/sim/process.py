@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fpcad.run.knots import BUFFER_KNOTS
 from fpcad.run.sim.controller import TICK_HZ, Controller, ControllerSetup
 from fpcad.run.sim.plant import Plant
 from fpcad.run.sim.spawn import Mishap, limits_from_json
@@ -113,7 +114,7 @@ class Device:
         setup = ControllerSetup(
             self._limits,
             secrets.randbits(32),
-            buffer_knots=round(32 * max(self._rate, 1)),
+            buffer_knots=round(BUFFER_KNOTS * max(self._rate, 1)),
             silence_us=round(500_000 * max(self._rate, 1)),
         )
         return Controller(setup, plant)
