@@ -21,7 +21,9 @@ MAX_IN_FLIGHT = 256
 """Bytes on the way at once: 22 ms at 115200 baud, which bounds how long a stop can take."""
 _URGENT_RESERVE = 40
 """Part of it that sequenced frames leave to Ping, Hold and Estop."""
-PING_PERIOD_S = 0.1
+QUIET_S = 0.025
+"""Time without any other frame after which the host says that it is there; a stall of 0.45 s then
+stays below the half second after which the controller stops."""
 SILENCE_S = 0.45
 """A controller sends telemetry every 20 ms; this long without any means that it is gone."""
 MAX_FAILURES = 8
@@ -80,7 +82,7 @@ class Link:
         self._next_seq = 0
         self._failures = 0
         self._waiting_since_s = 0.0
-        self._pinged_at_s = float("-inf")
+        self._wrote_at_s = float("-inf")
 
     def room_for(self, message: Any) -> bool:
         """Whether `message` may be sent now without more than `MAX_IN_FLIGHT` bytes on the way."""
@@ -101,13 +103,13 @@ class Link:
             self._waiting_since_s = now
         self._window.append(_Sent(self._next_seq, data, message, now))
         self._next_seq = (self._next_seq + 1) & 0xFFFF
-        self.transport.write(data)
+        self._write(data)
 
     def send_now(self, message: Any) -> None:
         """Send a message that is acted on at receipt; it may get lost."""
         if KINDS[type(message)].sequenced:
             raise ValueError(f"{type(message).__name__} is sequenced")
-        self.transport.write(self._frame(message, 0))
+        self._write(self._frame(message, 0))
 
     def poll(self) -> list[Any]:
         """Messages that came, after the link's own work: acknowledgements, repeats, pings.
@@ -180,11 +182,14 @@ class Link:
         for sent in self._window:
             sent.repeated = True
             self.resends += 1
-            self.transport.write(sent.data)
+            self._write(sent.data)
         self._waiting_since_s = self.clock()
 
     def _ping_if_due(self) -> None:
         now = self.clock()
-        if self.watch_silence and now - self._pinged_at_s >= PING_PERIOD_S:
-            self._pinged_at_s = now
+        if self.watch_silence and now - self._wrote_at_s >= QUIET_S:
             self.send_now(Ping(int(now * 1e6)))
+
+    def _write(self, data: bytes) -> None:
+        self._wrote_at_s = self.clock()
+        self.transport.write(data)

@@ -108,6 +108,7 @@ class Device:
         self._mishaps = [Mishap(**mishap) for mishap in data["mishaps"]]
         self._mute = self._noisy = False
         self.controller = self._boot(Plant(np.array(data["start_rad"])))
+        self._let_mishaps_happen()
 
     def _boot(self, plant: Plant) -> Controller:
         # Silence and buffer are in the host's time, whatever the pace of the controller's.
@@ -133,6 +134,9 @@ class Device:
         """Advance by one period of the controller."""
         self.controller.tick()
         self.recorder.add(self.controller)
+        self._let_mishaps_happen()
+
+    def _let_mishaps_happen(self) -> None:
         due = [m for m in self._mishaps if m.at_s <= self.controller.time_us / 1e6]
         for mishap in due:
             self._mishaps.remove(mishap)
