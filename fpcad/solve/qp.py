@@ -14,8 +14,9 @@ Array = NDArray[np.float64]
 UNBOUNDED = 1e30
 _OPTIMAL = (1, 2)
 _EQUALITY, _SOFT = 5, 8
-PRIMAL_TOLERANCE = 1e-11
-"""Violation that DAQP leaves in constraints; its own default of 1e-6 is what we accept in the end."""
+DAQP_SETTINGS = {"primal_tol": 1e-11, "sing_tol": 1e-15}
+"""DAQP's own defaults are 1e-6, which is what we accept in the end, and 1e-11, at which it calls
+feasible programs infeasible where the Hessian's eigenvalues span ten decades."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ def solve_daqp(program: QuadraticProgram) -> QpSolution | None:
     high = np.concatenate([program.upper, program.row_upper])
     sense = np.where(low == high, _EQUALITY, 0).astype(np.int32)
     x, _, flag, info = daqp.solve(
-        program.H, program.f, program.A, high, low, sense, primal_tol=PRIMAL_TOLERANCE
+        program.H, program.f, program.A, high, low, sense, **DAQP_SETTINGS
     )
     return QpSolution(x, info["lam"][n:]) if flag in _OPTIMAL else None
 
@@ -62,7 +63,7 @@ def solve_daqp_softly(program: QuadraticProgram) -> QpSolution | None:
     sense = np.full(len(low), _SOFT, dtype=np.int32)
     sense[:n] = np.where(program.lower == program.upper, _EQUALITY, 0)
     x, _, flag, info = daqp.solve(
-        program.H, program.f, program.A, high, low, sense, primal_tol=PRIMAL_TOLERANCE
+        program.H, program.f, program.A, high, low, sense, **DAQP_SETTINGS
     )
     return QpSolution(x, info["lam"][n:]) if flag in _OPTIMAL else None
 
