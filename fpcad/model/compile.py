@@ -18,6 +18,8 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from fpcad.errors import ToolchainError
+
 Array = NDArray[np.float64]
 logger = logging.getLogger(__name__)
 
@@ -121,11 +123,18 @@ def _compile(source: str, library: Path) -> None:
     command = [str(compiler()), *COMPILER_FLAGS, "-x", "c", "-", "-lm", "-o"]
 
     def run(path: Path) -> None:
-        subprocess.run(
-            [*command, str(path)], input=source, check=True, capture_output=True, text=True
-        )
+        done = subprocess.run([*command, str(path)], input=source, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise ToolchainError(
+                f"{command[0]} cannot compile formulas: {_first_line(done.stderr)}; install the C "
+                "library's headers (libc6-dev on Debian and Ubuntu), or name another compiler in CC"
+            )
 
     _write_beside(library, run)
+
+
+def _first_line(text: str) -> str:
+    return next(iter(text.strip().splitlines()), "it says nothing")
 
 
 def _write_beside(target: Path, write: Callable[[Path], None]) -> None:
