@@ -13,8 +13,8 @@ from rich.markup import escape
 
 from fpcad.console import ConsoleReporter, console, start_logging
 from fpcad.errors import FpcadError, SpecError
-from fpcad.summary import print_design, print_run
 from fpcad.spec import Spec, find_faults, json_schema, load_spec, write_new
+from fpcad.summary import print_design, print_run
 
 app = typer.Typer(
     name="fpcad",
@@ -41,7 +41,8 @@ BuildFolder = Annotated[
     Path, typer.Option("--build", metavar="DIR", help="Folder for everything that is made.")
 ]
 WorkerCount = Annotated[
-    int, typer.Option("--workers", "-j", min=0, help="Processes side by side; 0: one for each core.")
+    int,
+    typer.Option("--workers", "-j", min=0, help="Processes side by side; 0: one for each core."),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Make the last stage again.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout.")]
@@ -216,9 +217,7 @@ def main() -> None:
 Verb = Literal["solve", "sample", "evaluate", "select", "export"]
 
 
-def _run(
-    last: Verb, name: str, folder: Path, workers: int, force: bool, as_json: bool
-) -> None:
+def _run(last: Verb, name: str, folder: Path, workers: int, force: bool, as_json: bool) -> None:
     from fpcad.pipeline import Build, run_stages
     from fpcad.workers import available_cores
 

@@ -51,7 +51,9 @@ def read_json(source: Path) -> Any:
     try:
         return json.loads(source.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise StoreError(f"{source}: not readable as JSON ({error}); make the design again") from error
+        raise StoreError(
+            f"{source}: not readable as JSON ({error}); make the design again"
+        ) from error
 
 
 def write_table(target: Path, table: pa.Table) -> None:
@@ -65,7 +67,9 @@ def read_table(source: Path) -> pa.Table:
     try:
         return pq.read_table(source)
     except (OSError, pa.ArrowInvalid) as error:
-        raise StoreError(f"{source}: not readable as Parquet ({error}); make the design again") from error
+        raise StoreError(
+            f"{source}: not readable as Parquet ({error}); make the design again"
+        ) from error
 
 
 @dataclass(frozen=True)
@@ -98,7 +102,9 @@ class Shards:
         files = sorted(self.folder.glob("[0-9]*.parquet"))
         for number, file in enumerate(files):
             if file.stem != f"{number:06d}":
-                raise StoreError(f"{self.folder}: shard {number:06d} is missing; make the design again")
+                raise StoreError(
+                    f"{self.folder}: shard {number:06d} is missing; make the design again"
+                )
         return files
 
 

@@ -62,29 +62,29 @@ def _print_selected(folder: Path) -> None:
     row = next(row for row in metrics if row["id"] == selected["id"])
     design = ", ".join(f"{name} {value:.1f}" for name, value in selected["design"].items())
     out.print(f"hand {selected['id']}: {selected['reason']}\n{design}")
-    table = Table(title=f"with {selected['motor']} motors", title_justify="left")
+    table = Table(title="what it does and what that takes", title_justify="left")
     for heading in (
         "pose",
-        "turns tool [deg]",
-        "slides [mm/s]",
-        "torque, 90 % of path [N m]",
-        "torque for tip force [N m]",
-        "motors give [N m]",
-        "tip force asked / held [N]",
+        "turns tool\n[deg]",
+        "slides\n[mm/s]",
+        "torque p90\n[N m]",
+        "joint torque for tip force\n[N m]",
+        "tip force asked,\nheld [N]",
     ):
-        table.add_column(heading, justify="left" if heading == "pose" else "right")
+        table.add_column(heading, justify="left" if heading == "pose" else "right", no_wrap=True)
     for pose, torque in selected["torque"].items():
-        needed, given = torque["joint_torque_nm"], torque["motor_joint_torque_nm"]
         table.add_row(
             pose,
             f"{row[f'{pose}_tmr_deg']:.1f}",
             _number(row[f"{pose}_mss_mm_s"]),
             f"{row[f'{pose}_mft_p90_nmm'] / 1000:.2f}",
-            " ".join(f"{value:.2f}" for value in needed.values()),
-            " ".join(f"{value:.2f}" for value in given.values()),
-            f"{torque['tip_force_n']:g} / {torque['held_tip_force_n']:.1f}",
+            ", ".join(f"{value:.2f}" for value in torque["joint_torque_nm"].values()),
+            f"{torque['tip_force_n']:g}, {torque['held_tip_force_n']:.1f}",
         )
     out.print(table)
+    torque = next(iter(selected["torque"].values()))
+    given = ", ".join(f"{j} {t:.2f}" for j, t in torque["motor_joint_torque_nm"].items())
+    out.print(f"{selected['motor']} motors give each joint alone, continuously: {given} N m")
 
 
 def _number(value: float | None) -> str:

@@ -23,7 +23,9 @@ def to_internal(names: Sequence[str], values: Mapping[str, float]) -> NDArray[np
     return np.array([values[name] * internal_factor(name) for name in names])
 
 
-def to_named(names: Sequence[str], values: Sequence[float] | NDArray[np.float64]) -> dict[str, float]:
+def to_named(
+    names: Sequence[str], values: Sequence[float] | NDArray[np.float64]
+) -> dict[str, float]:
     """Inverse of :func:`to_internal`: values by name, in the units of the names' suffixes."""
     return {
         name: float(value) / internal_factor(name)

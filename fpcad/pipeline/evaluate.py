@@ -53,9 +53,7 @@ def _chunks(items: Iterable[Item]) -> Iterator[Iterator[Item]]:
         yield chain([first], islice(items, CANDIDATES_PER_SHARD - 1))
 
 
-def _store(
-    build: Build, evaluated: Iterable[tuple[Candidate, Evaluation]], bar: Progress
-) -> None:
+def _store(build: Build, evaluated: Iterable[tuple[Candidate, Evaluation]], bar: Progress) -> None:
     """Write one shard of metrics, with the paths where the spec keeps more than the chosen one's."""
     rows, paths = [], [PATH_SCHEMA.empty_table()]
     for candidate, evaluation in evaluated:
@@ -91,4 +89,4 @@ def _metrics_row(candidate: int, evaluation: Evaluation) -> dict[str, Any]:
     return row
 
 
-EVALUATE = Stage("evaluate", ("path", "motors"), (FILE,), evaluate_all)
+EVALUATE = Stage("evaluate", ("path", "motors"), ("wield",), (FILE,), evaluate_all)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 import numpy as np
 import pyarrow.compute as pc
 
@@ -36,9 +35,7 @@ def export(build: Build) -> Counts:
             write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json")
             bar.advance(1, f"{path.pose}: {trajectory.duration_s:.1f} s")
     with build.reporter.stage("parts", PART_STEPS) as bar:
-        files = make_hand(
-            build.spec, geometry, build.folder, lambda step: bar.advance(1, step)
-        )
+        files = make_hand(build.spec, geometry, build.folder, lambda step: bar.advance(1, step))
     return {"files": len(files) + len(build.spec.poses), "selected": int(selected["id"])}
 
 
@@ -64,6 +61,7 @@ def make_trajectory(build: Build, design: np.ndarray, path: WieldingPath) -> Tra
 EXPORT = Stage(
     "export",
     ("name", "motors", "motion", "print"),
+    ("make",),
     ("hand/transmission.yaml", "parts/bom.csv", "trajectories"),
     export,
 )

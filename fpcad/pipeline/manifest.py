@@ -36,7 +36,9 @@ def begin_manifest(folder: Path, spec: Spec, stages: dict[str, Any]) -> dict[str
     return manifest
 
 
-def record_stage(folder: Path, manifest: dict[str, Any], stage: str, record: dict[str, Any]) -> None:
+def record_stage(
+    folder: Path, manifest: dict[str, Any], stage: str, record: dict[str, Any]
+) -> None:
     """Write what is to be told of one stage."""
     manifest["stages"][stage] = {**record, "time": datetime.now(UTC).isoformat(timespec="seconds")}
     write_json(folder / FILE, manifest)

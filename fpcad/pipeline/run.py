@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import time
-from importlib.metadata import version
 from typing import Any
 
 from fpcad.pipeline.evaluate import EVALUATE
@@ -28,7 +27,7 @@ def run_stages(build: Build, last: str, force: bool = False) -> dict[str, Any]:
     """
     before, known = "", read_manifest(build.folder)["stages"]
     for stage in STAGES:
-        before = build.keys[stage.name] = stage.key(build.spec, before, version("fpcad"))
+        before = build.keys[stage.name] = stage.key(build.spec, before)
     valid = {
         stage.name: known[stage.name]
         for stage in STAGES

@@ -116,4 +116,4 @@ def _compact(build: Build, tree: Tree, calls: list[Call], space: DesignSpace) ->
     write_table(build.folder / CANDIDATES, pa.Table.from_pylist(rows, schema))
 
 
-SAMPLE = Stage("sample", ("sampling",), (CALLS, CANDIDATES), sample)
+SAMPLE = Stage("sample", ("sampling",), ("sample",), (CALLS, CANDIDATES), sample)

@@ -84,4 +84,10 @@ def _selected(
     }
 
 
-SELECT = Stage("select", ("selection", "path", "motors"), (METRICS, PATHS, SELECTED), select)
+SELECT = Stage(
+    "select",
+    ("selection", "path", "motors"),
+    ("wield", "select"),
+    (METRICS, PATHS, SELECTED),
+    select,
+)

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
+import pyarrow as pa
 
 from fpcad.errors import SolveError
 from fpcad.model.state import pose_state
 from fpcad.pipeline.stage import Build, Counts, Stage
 from fpcad.pipeline.tables import candidate_row, candidate_schema, read_candidate
+from fpcad.sample.search import search_start
 from fpcad.sample.space import DesignSpace, design_space
 from fpcad.sample.tree import Candidate
 from fpcad.solve.attempt import Attempt, attempt
-from fpcad.sample.search import search_start
-from fpcad.wield.evaluate import motion_range
 from fpcad.spec.pose import Initial
 from fpcad.store import read_table, write_table
-
-import pyarrow as pa
+from fpcad.wield.evaluate import motion_range
 
 FILE = "store/start.parquet"
 
@@ -67,6 +66,7 @@ def _search(build: Build, space: DesignSpace) -> tuple[np.ndarray, Attempt, int]
 SOLVE = Stage(
     "solve",
     ("tool", "hand", "poses", "statics", "bounds", "solver", "initial"),
+    ("spec", "model", "solve", "sample"),
     (FILE,),
     solve,
 )

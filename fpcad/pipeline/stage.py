@@ -16,6 +16,8 @@ from fpcad.spec.schema import Spec
 from fpcad.store import Shards
 from fpcad.workers import Workers, available_cores
 
+PACKAGE = Path(__file__).parent.parent
+
 Counts = dict[str, int | float | str]
 """What a stage tells of itself in the manifest."""
 
@@ -100,16 +102,23 @@ class Stage:
     Attributes:
         name: verb of the command line.
         sections: parts of the spec that the stage reads itself.
+        layers: folders of the package whose code its results depend on.
         outputs: files in the build folder without which it is not up to date.
         run: makes the outputs and tells counts.
     """
 
     name: str
     sections: tuple[str, ...]
+    layers: tuple[str, ...]
     outputs: tuple[str, ...]
     run: Callable[[Build], Counts]
 
-    def key(self, spec: Spec, before: str, version: str) -> str:
-        """Hash of everything that the stage's results depend on."""
-        text = "\0".join([self.name, version, before, spec_hash(spec, *self.sections)])
-        return hashlib.sha256(text.encode()).hexdigest()
+    def key(self, spec: Spec, before: str) -> str:
+        """Hash of everything that the stage's results depend on: stages before, spec and code."""
+        digest = hashlib.sha256()
+        for text in (self.name, before, spec_hash(spec, *self.sections)):
+            digest.update(text.encode() + b"\0")
+        for layer in self.layers:
+            for source in sorted((PACKAGE / layer).rglob("*.py")):
+                digest.update(source.read_bytes())
+        return digest.hexdigest()

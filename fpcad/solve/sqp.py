@@ -42,7 +42,7 @@ class SqpSettings:
     max_trust: float = 2.0
     min_trust: float = 1e-5
     """Radius at which the merit function is no longer followed."""
-    max_restorations: int = 8
+    max_restorations: int = 20
     """Newton steps that restore feasibility at the end."""
 
 
@@ -114,18 +114,21 @@ def _descend(program: Program, point: _Point, settings: SqpSettings) -> tuple[_P
 
 
 def _restore(program: Program, point: _Point, settings: SqpSettings) -> _Point:
-    """Newton's method on the violated constraints, each step the shortest that meets them."""
+    """Newton's method on the violated constraints, each step the shortest that meets them.
+
+    Violation may rise for a step or two where a contact crosses from cylinder to tip, since the
+    curvature jumps there; the least violated point is returned.
+    """
+    best = point
     for _ in range(settings.max_restorations):
-        if point.violation <= settings.feasibility:
+        if best.violation <= settings.feasibility:
             break
         step = _step(program, point, settings.max_trust, None, shortest=True)
         if step is None:
             break
-        trial = _evaluate(program, _moved(program, point.y, step.x))
-        if trial.violation >= point.violation:
-            break
-        point = trial
-    return point
+        point = _evaluate(program, _moved(program, point.y, step.x))
+        best = min(best, point, key=lambda candidate: candidate.violation)
+    return best
 
 
 def _evaluate(program: Program, y: Array) -> _Point:

@@ -82,8 +82,8 @@ class Path(SpecModel):
     """How sharply the end of a path is located by bisection [deg]."""
     max_turn_deg: Annotated[float, Field(gt=0, le=360)] = 180.0
     """Turn in one direction at which a path is complete [deg]."""
-    rate_weight: Positive = 1e-6
-    """Weight of the squared joint rates beside the squared sliding speeds."""
+    rate_weight: Positive = 1.0
+    """Weight [mm^2] of the squared joint rates beside the squared sliding speeds."""
     qp: Literal["daqp", "osqp"] = "daqp"
     """Solver of the rate program; `osqp` is the slower cross-check."""
     keep: Literal["all", "front", "selected"] = "front"
