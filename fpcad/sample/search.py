@@ -113,11 +113,11 @@ def _search_pose(
     held_poses: list[tuple[float, SolvedPose]] = []
     used = 0
     while used < spec.solver.starts and len(held_poses) < ENOUGH:
-        numbers = range(used, used + STARTS_PER_ROUND)
+        numbers = range(used, min(used + STARTS_PER_ROUND, spec.solver.starts))
         tasks = [_Start(pose, design, (*seed, number)) for number in numbers]
         found = workers.map(partial(_try_start, judge), tasks)
         held_poses += [result for result in found if result is not None]
-        used += STARTS_PER_ROUND
+        used += len(numbers)
     best = max(held_poses, key=lambda result: result[0], default=None)
     return (None if best is None else best[1]), used
 
