@@ -54,6 +54,7 @@ def options(
         int, typer.Option("--verbose", "-v", count=True, help="Log more; twice for everything.")
     ] = 0,
 ) -> None:
+    """Options that come before the verb."""
     start_logging(verbose)
 
 

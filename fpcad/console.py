@@ -61,8 +61,9 @@ class Bar:
 
     def advance(self, steps: int = 1, note: str = "") -> None:
         """Count finished steps; a note replaces the one before."""
-        fields = {"note": note} if note else {}
-        self._progress.update(self._task, advance=steps, **fields)
+        self._progress.advance(self._task, steps)
+        if note:
+            self._progress.update(self._task, note=note)
 
 
 def start_logging(verbose: int) -> None:

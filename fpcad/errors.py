@@ -35,3 +35,9 @@ class ToolchainError(FpcadError):
     """Something outside fpcad is missing; the message names what to install."""
 
     exit_code = 5
+
+
+class MakeError(FpcadError):
+    """A hand cannot be made: the message names the part or the motion that fails."""
+
+    exit_code = 6

@@ -65,11 +65,11 @@ def _print_selected(folder: Path) -> None:
     table = Table(title="what it does and what that takes", title_justify="left")
     for heading in (
         "pose",
-        "turns tool\n[deg]",
-        "slides\n[mm/s]",
-        "torque p90\n[N m]",
-        "joint torque for tip force\n[N m]",
-        "tip force asked,\nheld [N]",
+        "turns\n\\[deg]",
+        "slides\n\\[mm/s]",
+        "torque p90\n\\[N m]",
+        "joint torques\nfor tip force\n\\[N m]",
+        "tip force\nasked, held\n\\[N]",
     ):
         table.add_column(heading, justify="left" if heading == "pose" else "right", no_wrap=True)
     for pose, torque in selected["torque"].items():

@@ -40,7 +40,7 @@ def make_hand(
     """Make a hand's parts and description and write them under `out`, a build's folder.
 
     `progress` is told each step in a few words. Returns the files written. Raises
-    :class:`fpcad.errors.FpcadError` naming the part that cannot be made.
+    :class:`fpcad.errors.MakeError` naming the part that cannot be made.
     """
     row = motor(spec.motors.type)
     parts = make_parts(spec, geometry, progress)

@@ -10,7 +10,7 @@ import trimesh
 from numpy.typing import NDArray
 from trimesh.exchange.stl import export_stl
 
-from fpcad.errors import FpcadError
+from fpcad.errors import MakeError
 from fpcad.make.parts.solids import Solid
 from fpcad.spec.hardware import Print
 from fpcad.units import M_PER_MM, RAD_PER_DEG
@@ -22,10 +22,10 @@ INTERFERENCE_MM3 = 1e-3
 
 
 def mesh_of(name: str, solid: Solid, settings: Print) -> trimesh.Trimesh:
-    """Watertight mesh [mm] of a part; raises :class:`FpcadError` with the part's name otherwise."""
+    """Watertight mesh [mm] of a part; raises :class:`MakeError` with the part's name otherwise."""
     if not solid.isValid() or len(solid.Solids()) != 1:
         bodies = len(solid.Solids())
-        raise FpcadError(f"part {name}: a valid solid of one body is needed, not {bodies} bodies")
+        raise MakeError(f"part {name}: a valid solid of one body is needed, not {bodies} bodies")
     tolerance, angle = settings.mesh_tolerance_mm, settings.mesh_angle_deg * RAD_PER_DEG
     vertices, faces = solid.tessellate(tolerance, angle)
     mesh = trimesh.Trimesh([v.toTuple() for v in vertices], faces, process=False)
@@ -38,8 +38,10 @@ def mesh_of(name: str, solid: Solid, settings: Print) -> trimesh.Trimesh:
 
 
 def _folded(mesh: trimesh.Trimesh) -> NDArray[np.bool_]:
-    """Triangles (n,) that lie back to back on another one: the kernel's mesher leaves such flaps,
-    which enclose nothing, along seams of thin slivers."""
+    """Triangles (n,) that lie back to back on another one.
+
+    The kernel's mesher leaves such flaps, which enclose nothing, along seams of thin slivers.
+    """
     _, which, counts = np.unique(
         np.sort(mesh.faces, axis=1), axis=0, return_inverse=True, return_counts=True
     )
@@ -66,11 +68,11 @@ def common_volume_mm3(a: trimesh.Trimesh, b: trimesh.Trimesh) -> float:
 
 
 def check_apart(pairs: Iterable[tuple[str, trimesh.Trimesh, str, trimesh.Trimesh]]) -> None:
-    """Raise :class:`FpcadError` naming the first pair of meshes [mm] that interfere."""
+    """Raise :class:`MakeError` naming the first pair of meshes [mm] that interfere."""
     for name_a, a, name_b, b in pairs:
         volume = common_volume_mm3(a, b)
         if volume > INTERFERENCE_MM3:
-            raise FpcadError(
+            raise MakeError(
                 f"parts {name_a} and {name_b} interfere: they share {volume:.3g} mm^3, "
                 f"at most {INTERFERENCE_MM3:g} mm^3 is allowed"
             )
@@ -84,7 +86,7 @@ def _manifold(mesh: trimesh.Trimesh) -> manifold3d.Manifold:
         )
     )
     if body.status() != manifold3d.Error.NoError:
-        raise FpcadError(f"a mesh is not a manifold: {body.status().name}")
+        raise MakeError(f"a mesh is not a manifold: {body.status().name}")
     return body
 
 
@@ -98,4 +100,4 @@ def _check(name: str, mesh: trimesh.Trimesh) -> None:
     if bodies != 1:
         faults.append(f"has {bodies} bodies")
     if faults:
-        raise FpcadError(f"part {name}: its mesh {' and '.join(faults)}")
+        raise MakeError(f"part {name}: its mesh {' and '.join(faults)}")

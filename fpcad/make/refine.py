@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BPoly, BSpline, PchipInterpolator
 
-from fpcad.errors import SolveError
+from fpcad.errors import MakeError
 from fpcad.make.grip import Grip
 from fpcad.wield.path import WieldingPath
 
@@ -80,7 +80,7 @@ def contact_curve(leg: Leg, grip: Grip, project: Project, limits: Array) -> Cont
         limits: (2, n_joints) least and greatest joint angles [rad].
 
     Raises:
-        SolveError: contact cannot be kept, however fine the knots.
+        MakeError: contact cannot be kept, however fine the knots.
     """
     guide = guide_spline(leg)
     knots = np.unique(guide.t)
@@ -133,8 +133,8 @@ def _projected(leg: Leg, guide: BSpline, project: Project, grip: Grip, turns: Ar
     return states
 
 
-def _lost(leg: Leg, turn: float, what: str) -> SolveError:
-    return SolveError(f"{what} at a tool angle of {np.degrees(leg.direction * turn):.2f} deg")
+def _lost(leg: Leg, turn: float, what: str) -> MakeError:
+    return MakeError(f"{what} at a tool angle of {np.degrees(leg.direction * turn):.2f} deg")
 
 
 def _through(knots: Array, exact: Array, guide: BSpline, limits: Array) -> BPoly:

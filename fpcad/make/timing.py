@@ -17,7 +17,7 @@ from scipy import sparse
 from scipy.interpolate import BSpline
 from scipy.optimize import linprog
 
-from fpcad.errors import SolveError
+from fpcad.errors import MakeError
 from fpcad.make.quintic import Motion, MotionLimits
 from fpcad.make.refine import ContactCurve
 
@@ -146,7 +146,7 @@ def _largest_squared_rate(
         method="highs",
     )
     if not found.success:
-        raise SolveError(f"no time law was found: {found.message}")
+        raise MakeError(f"no time law was found: {found.message}")
     return found.x
 
 

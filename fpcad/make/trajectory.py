@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BPoly
 
-from fpcad.errors import SolveError
+from fpcad.errors import MakeError
 from fpcad.make.grip import ContactLink, Grip
 from fpcad.make.quintic import Motion, MotionLimits, pressure, quintics, slowed
 from fpcad.make.refine import ContactCurve, Leg, Project, contact_curve, legs, limit_excess
@@ -112,7 +112,7 @@ def build_trajectory(
         joint_speed_limit: (n,) or (n_fingers, n_joints) what the motors reach [rad/s].
 
     Raises:
-        SolveError: contact cannot be kept along the path.
+        MakeError: contact cannot be kept along the path.
     """
     pose = spec.poses[path.pose]
     contacts = tuple(ContactLink(contact.finger, contact.link) for contact in pose.contacts)
@@ -184,7 +184,7 @@ def _in_contact(law: TimeLaw, cells: int, leg: Leg, grip: Grip, joint_range: Arr
         if not faulty.any():
             return clock
         clock = np.sort(np.concatenate([clock, ((clock[:-1] + clock[1:]) / 2)[faulty]]))
-    raise SolveError("contact is lost between the knots of a trajectory, however close they are")
+    raise MakeError("contact is lost between the knots of a trajectory, however close they are")
 
 
 def _there_and_back(there: Motion, direction: float) -> Motion:

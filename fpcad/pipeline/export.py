@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pyarrow.compute as pc
 
+from fpcad.errors import MakeError
 from fpcad.make.hand import make_hand
 from fpcad.make.trajectory import Trajectory, build_trajectory
 from fpcad.make.trajectory_file import write_trajectory
 from fpcad.model.geometry import hand_geometry
 from fpcad.model.transmission import hand_transmission, single_axis_speed_limits
-from fpcad.pipeline.select import PATHS, SELECTED
+from fpcad.pipeline.select import PATHS, SELECTED, refuse
 from fpcad.pipeline.stage import Build, Counts, Stage
 from fpcad.pipeline.tables import read_path
 from fpcad.sample.space import design_space
@@ -24,7 +25,25 @@ PART_STEPS = 8
 
 
 def export(build: Build) -> Counts:
-    """Write everything that is printed, simulated or run of the chosen hand."""
+    """Write everything that is printed, simulated or run of the chosen hand.
+
+    A hand that cannot be made is refused with its reason, and the next best is chosen.
+    """
+    refused = 0
+    while True:
+        chosen = int(read_json(build.folder / SELECTED)["id"])
+        try:
+            files = _export_chosen(build)
+        except MakeError as error:
+            build.reporter.note(f"hand {chosen} cannot be made: {error}")
+            refuse(build, chosen, str(error))
+            refused += 1
+        else:
+            return {"files": files, "selected": chosen, "refused": refused}
+
+
+def _export_chosen(build: Build) -> int:
+    """Write the chosen hand's files and count them."""
     space, selected = design_space(build.spec.hand), read_json(build.folder / SELECTED)
     named = np.array([selected["design"][name] for name in space.names])
     design = space.internal(named)
@@ -36,7 +55,7 @@ def export(build: Build) -> Counts:
             bar.advance(1, f"{path.pose}: {trajectory.duration_s:.1f} s")
     with build.reporter.stage("parts", PART_STEPS) as bar:
         files = make_hand(build.spec, geometry, build.folder, lambda step: bar.advance(1, step))
-    return {"files": len(files) + len(build.spec.poses), "selected": int(selected["id"])}
+    return len(files) + len(build.spec.poses)
 
 
 def chosen_paths(build: Build, candidate: int) -> list[WieldingPath]:

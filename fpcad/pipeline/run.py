@@ -35,11 +35,13 @@ def run_stages(build: Build, last: str, force: bool = False) -> dict[str, Any]:
     }
     manifest = begin_manifest(build.folder, build.spec, valid)
     write_whole(build.folder / "spec.yaml", dump_spec(build.spec))
-    for stage in STAGES:
-        if not _up_to_date(build, stage, valid) or (force and stage.name == last):
-            _run(build, stage, manifest)
-        else:
+    for place, stage in enumerate(STAGES):
+        if _up_to_date(build, stage, manifest["stages"]) and not (force and stage.name == last):
             build.reporter.note(f"{stage.name}: up to date")
+        else:
+            for later in STAGES[place:]:
+                manifest["stages"].pop(later.name, None)
+            _run(build, stage, manifest)
         if stage.name == last:
             break
     return manifest

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 
 from fpcad.pipeline.evaluate import FILE as METRICS_FILE
 from fpcad.pipeline.evaluate import evaluate_candidate
@@ -25,20 +24,38 @@ METRICS, PATHS, SELECTED = "metrics.parquet", "paths.parquet", "selected.json"
 
 
 def select(build: Build) -> Counts:
-    """Rank all candidates, choose one, and keep the paths that the spec asks for."""
-    selection, space = build.spec.selection, design_space(build.spec.hand)
+    """Rank all candidates, choose one, and keep the paths that the spec asks for.
+
+    Every hand counts as makeable until making it has failed; see :func:`refuse`.
+    """
     metrics = read_table(build.folder / METRICS_FILE)
-    # No check of the parts feeds this table yet: every hand that wields counts as makeable.
     n = metrics.num_rows
     metrics = metrics.append_column("makeable", pa.array(np.ones(n, dtype=bool)))
-    metrics = metrics.append_column("reason", pa.array([""] * n))
-    ranked = rank_table(metrics, list(build.spec.poses), selection)
-    choice = choose(ranked, selection.rule)
+    return _settle(build, metrics.append_column("reason", pa.array([""] * n)))
+
+
+def refuse(build: Build, candidate: int, reason: str) -> None:
+    """Mark a candidate as one that cannot be made, say why, and choose another."""
+    metrics = read_table(build.folder / METRICS)
+    rows = metrics.to_pylist()
+    refused = [
+        {**row, "makeable": False, "reason": reason} for row in rows if row["id"] == candidate
+    ]
+    others = [row for row in rows if row["id"] != candidate]
+    rows = sorted(others + refused, key=lambda row: row["id"])
+    _settle(build, pa.Table.from_pylist(rows, metrics.schema))
+
+
+def _settle(build: Build, metrics: pa.Table) -> Counts:
+    """Rank the hands, choose among those that can be made, and write what follows."""
+    space, rule = design_space(build.spec.hand), build.spec.selection.rule
+    ranked = rank_table(metrics, list(build.spec.poses), build.spec.selection)
+    choice = choose(ranked, rule)
     candidate = next(c for c in read_candidates(build) if c.id == choice.id)
     evaluation = evaluate_candidate(space, build.bench, candidate)
-    write_table(build.folder / METRICS, ranked)
     _keep_paths(build, _kept(build, ranked), choice.id, evaluation)
     write_json(build.folder / SELECTED, _selected(build, space, candidate, evaluation, choice))
+    write_table(build.folder / METRICS, ranked)
     return {"selected": choice.id, "front": int(sum(ranked["pareto"].to_pylist()))}
 
 
@@ -55,10 +72,9 @@ def _kept(build: Build, ranked: pa.Table) -> list[int]:
 
 def _keep_paths(build: Build, kept: list[int], chosen: int, evaluation: Evaluation) -> None:
     """Write the paths of the kept candidates and, with a rule off the front, of the chosen one."""
-    wanted = pa.array(kept, pa.int64())
     tables = [PATH_SCHEMA.empty_table()]
     for shard in build.shards("evaluate").attachments("paths"):
-        tables.append(shard.filter(pc.is_in(shard["id"], wanted)))
+        tables.append(shard.filter(np.isin(shard["id"].to_numpy(), kept)))
     if chosen not in kept:
         tables += [path_table(chosen, path) for path in evaluation.paths.values()]
     write_table(build.folder / PATHS, pa.concat_tables(tables))

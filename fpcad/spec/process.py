@@ -84,6 +84,8 @@ class Path(SpecModel):
     """Turn in one direction at which a path is complete [deg]."""
     rate_weight: Positive = 1.0
     """Weight [mm^2] of the squared joint rates beside the squared sliding speeds."""
+    max_joint_rate: Positive = 5.0
+    """Largest turn of a joint for one of the tool [-]; near a singular posture there is no bound."""
     qp: Literal["daqp", "osqp"] = "daqp"
     """Solver of the rate program; `osqp` is the slower cross-check."""
     keep: Literal["all", "front", "selected"] = "front"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fpcad.errors import SolveError
+from fpcad.errors import MakeError
 from fpcad.model.pose import HAND_SIZE
 from fpcad.model.transmission import hand_transmission
 from fpcad.solve.attempt import Workbench
@@ -22,6 +22,7 @@ from fpcad.wield.integrate import project
 from fpcad.wield.metrics import PathMetrics, path_metrics
 from fpcad.wield.path import WieldingPath, join_traces
 from fpcad.wield.rates import Mechanism
+from fpcad.wield.touch import nearest_contacts
 from fpcad.wield.trace import Load, Stepping, trace
 
 Array = NDArray[np.float64]
@@ -66,19 +67,18 @@ def contact_projector(
 ) -> Callable[[float, Array], Array]:
     """The function that corrects a guessed posture on a path to exact contact.
 
-    It takes a tool angle [rad] and joints (n_u,) [rad] and returns joints (n_u,) [rad]; the contacts
-    are guessed from the path's states. It raises :class:`SolveError` where there is no contact.
+    It takes a tool angle [rad] and joints (n_u,) [rad] and returns joints (n_u,) [rad]. It raises
+    :class:`MakeError` where there is no contact.
     """
-    n_states = len(path.tool_angle_rad)
-    joints, contacts = path.joints_rad.reshape(n_states, -1), path.contacts.reshape(n_states, -1)
-    y = np.concatenate([path.hand_in_tool, joints[0], contacts[0]])
+    hand = path.hand_in_tool
+    y = np.concatenate([hand, path.joints_rad[0].ravel(), path.contacts[0].ravel()])
     mechanism = build_mechanism(bench, path.pose, design, y)
 
     def to_contact(turn: float, guess: Array) -> Array:
-        at = [np.interp(turn, path.tool_angle_rad, column) for column in contacts.T]
-        state = project(mechanism, turn, np.concatenate([guess, at]))
+        contacts = nearest_contacts(bench, path.pose, design, hand, turn, guess)
+        state = project(mechanism, turn, np.concatenate([guess, contacts.ravel()]))
         if state is None:
-            raise SolveError(f"{path.pose}: no contact at a tool angle of {turn:.4f} rad")
+            raise MakeError(f"{path.pose}: no contact at a tool angle of {turn:.4f} rad")
         return state[: len(guess)]
 
     return to_contact
@@ -89,7 +89,8 @@ def build_mechanism(bench: Workbench, pose: str, design: Array, y: Array) -> Mec
     settings, kernels = bench.spec.path, bench.kernels[pose]
     bounds = path_bounds(bench.spec, pose, kernels.layout)
     hand, qp = y[:HAND_SIZE], BACKENDS[settings.qp]
-    return Mechanism(kernels, bounds, design, hand, settings.rate_weight, qp)
+    weight, fastest = settings.rate_weight, settings.max_joint_rate
+    return Mechanism(kernels, bounds, design, hand, weight, fastest, qp)
 
 
 def build_load(spec: Spec, pose: str) -> Load:
@@ -99,7 +100,7 @@ def build_load(spec: Spec, pose: str) -> Load:
     return Load(
         tip_force_n=spec.poses[pose].tip_force_n,
         max_joint_torque_nmm=spec.statics.max_joint_torque_nmm,
-        motor_per_joint_torque=np.linalg.inv(A.T),
+        motor_per_joint_torque=np.asarray(np.linalg.inv(A.T), dtype=np.float64),
         motor_torque_nmm=np.full(len(A), limit),
     )
 

@@ -38,6 +38,7 @@ class Mechanism:
     design: Array  # (n_d,) [mm, rad]
     hand: Array  # (6,) pose of H in O [mm, rad]
     rate_weight: float
+    max_joint_rate: float  # [rad/s] at a tool rate of 1 rad/s
     qp: Backend
 
 
@@ -92,6 +93,7 @@ def _rate_program(
     S, s0, N, n0 = motion
     n_u = S.shape[1]
     lower, upper = _look_ahead(m.bounds, x, dt, slice(0, n_u))
+    lower, upper = np.maximum(lower, -m.max_joint_rate), np.minimum(upper, m.max_joint_rate)
     H = 2 * (S.T @ S + m.rate_weight * np.eye(n_u))
     return QuadraticProgram(H, 2 * S.T @ s0, lower, upper, N, -n0, -n0)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fpcad.errors import SolveError
+from fpcad.errors import MakeError
 from fpcad.make.refine import CURVE_GAP_MM, Leg, contact_curve, guide_spline, legs
 from tests.make.mechanism import Mechanism, mechanism
 
@@ -78,7 +78,7 @@ def test_path_without_a_state_at_the_pose_is_refused(kinked: Mechanism):
 
 def test_projection_that_misses_contact_is_reported(kinked: Mechanism):
     leg = legs(kinked.path(0, 5))[0]
-    with pytest.raises(SolveError, match="not in contact, or in the tool at a tool angle of"):
+    with pytest.raises(MakeError, match="not in contact, or in the tool at a tool angle of"):
         contact_curve(leg, kinked.grip, lambda _, guess: guess + 1e-3, kinked.limits)
 
 
@@ -89,13 +89,13 @@ def test_posture_with_a_finger_in_the_tool_is_reported(kinked: Mechanism):
         return joints
 
     leg = legs(kinked.path(25, 0))[0]
-    with pytest.raises(SolveError, match="not in contact, or in the tool at a tool angle of"):
+    with pytest.raises(MakeError, match="not in contact, or in the tool at a tool angle of"):
         contact_curve(leg, kinked.grip, with_straight_ring, kinked.limits)
 
 
 def test_failure_of_the_projection_reaches_the_caller(kinked: Mechanism):
     def fails(tool_angle, guess):
-        raise SolveError("no posture here")
+        raise MakeError("no posture here")
 
-    with pytest.raises(SolveError, match="no posture here"):
+    with pytest.raises(MakeError, match="no posture here"):
         contact_curve(legs(kinked.path(0, 5))[0], kinked.grip, fails, kinked.limits)

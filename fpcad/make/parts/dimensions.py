@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from fpcad.errors import FpcadError
+from fpcad.errors import MakeError
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.base import Interval
 from fpcad.spec.schema import Spec
@@ -95,7 +95,7 @@ class Dimensions:
 
 
 def finger_dimensions(spec: Spec, geometry: HandGeometry) -> Dimensions:
-    """Dimensions of a hand's fingers; raises :class:`FpcadError` when a part has no room."""
+    """Dimensions of a hand's fingers; raises :class:`MakeError` when a part has no room."""
     settings, radius = spec.print, geometry.radius_mm
     limits = {
         joint: (low * RAD_PER_DEG, high * RAD_PER_DEG)
@@ -121,7 +121,7 @@ def _root_radius(geometry: HandGeometry) -> float:
     radii = {shape.finger: shape.radius_mm for shape in geometry.palm if shape.finger}
     for finger in geometry.fingers:
         if radii.get(finger, 0.0) < LEAST_ROOT_RADIUS_MM:
-            raise FpcadError(
+            raise MakeError(
                 f"hand.palm: {finger} has no sphere of at least {LEAST_ROOT_RADIUS_MM:g} mm at "
                 f"its root, where its MCP joint must fit"
             )
@@ -131,13 +131,13 @@ def _root_radius(geometry: HandGeometry) -> float:
 def _check_room(dimensions: Dimensions) -> None:
     least = (dimensions.pin_hole + PIN_WALL_MM) / 0.7
     if dimensions.bone < least:
-        raise FpcadError(
+        raise MakeError(
             f"finger: skin and clearance leave a bone of radius {dimensions.bone:g} mm; "
             f"the IP pin needs {least:.2f} mm"
         )
     bend = dimensions.skin_outer * math.tan(dimensions.ip_flex[1] / 2)
     if dimensions.proximal_length - bend < dimensions.shaft_start + 1.0:
-        raise FpcadError(
+        raise MakeError(
             f"finger: at full IP flexion the bend plane leaves no proximal skin between "
             f"{dimensions.shaft_start:g} mm and {dimensions.proximal_length - bend:.2f} mm"
         )
