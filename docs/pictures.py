@@ -41,7 +41,7 @@ def main(name: str) -> None:
     for place, image in enumerate(pictures):
         scaled = image.resize((WIDTH * 5 // 4, HEIGHT))
         strip.paste(scaled.crop((WIDTH // 8, 0, WIDTH // 8 + WIDTH, HEIGHT)), (WIDTH * place, 0))
-    strip.quantize(192).save(Path("docs") / "images" / f"{name}.png", optimize=True)
+    strip.save(Path("docs") / "images" / f"{name}.png", optimize=True)
 
 
 main(sys.argv[1])
