@@ -56,4 +56,5 @@ def project(m: Mechanism, turn: float, guess: Array) -> Array | None:
     """The state x = [u, a] in contact next to a guess, tool and hand held; None if there is none."""
     program = build_projection_program(m.kernels, m.bounds, m.design, m.hand, turn)
     result = restore(program, guess, PROJECTION)
-    return result.y if result.converged else None
+    far = np.abs((result.y - guess) / program.scale).max() > PROJECTION.max_trust
+    return result.y if result.converged and not far else None

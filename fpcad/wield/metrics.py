@@ -64,4 +64,4 @@ def percentile_over(axis: Array, values: Array, fraction: float) -> float:
     edges = np.concatenate([axis[:1], (axis[1:] + axis[:-1]) / 2, axis[-1:]])
     order = np.argsort(values, kind="stable")
     covered = np.cumsum(np.diff(edges)[order]) / (axis[-1] - axis[0])
-    return float(values[order][np.searchsorted(covered, fraction)])
+    return float(values[order][np.searchsorted(covered[:-1], fraction)])
