@@ -42,9 +42,22 @@ def random_posture(spec: Spec, pose: str, seed: int) -> Posture:
     return Posture(fingers, d, random.uniform(-0.5, 0.5), h, random.uniform(low, high, (4, 3)), a)
 
 
-def touching_posture(spec: Spec, pose: str, contact: int, arclength: float, seed: int) -> Posture:
-    """A random posture whose hand is moved so that one contact, at an arc length given relative to
-    the end of the finger's cylinder [mm], is closed; tangents are turned by a random angle."""
+def touching_posture(
+    spec: Spec,
+    pose: str,
+    contact: int,
+    arclength: float,
+    seed: int,
+    spin: float | None = None,
+) -> Posture:
+    """A random posture whose hand is moved so that one contact is closed.
+
+    Args:
+        contact: which one.
+        arclength: where on the finger [mm], from the end of its cylinder on.
+        spin: angle [rad] between the axes of tool and finger; random, and never near parallel,
+            where there are no contact rates, if not given.
+    """
     posture = random_posture(spec, pose, seed)
     cylinder = posture.d[0] - posture.d[3] / 2
     posture.a[contact, 2] = cylinder + arclength
@@ -53,7 +66,7 @@ def touching_posture(spec: Spec, pose: str, contact: int, arclength: float, seed
     name = posture.fingers[contact]
     link = link_frame(name, "distal", posture.d, posture.u[FINGERS.index(name)])
     touch = distal_touch(posture.d, *posture.a[contact, 2:]).seen_from(link)
-    spin = random.uniform(0.3, 1.2)  # the axes cross: parallel cylinders have no contact rates
+    spin = random.uniform(0.3, 1.2) if spin is None else spin
     R = (
         _frame(-tool.normal, tool.tangents[:, 0])
         @ _about_z(spin)
