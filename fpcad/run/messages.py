@@ -36,6 +36,9 @@ class Cause(IntEnum):
     SILENCE = 2
     UNDERRUN = 3
     TRACKING = 4
+    CURRENT = 5
+    TEMPERATURE = 6
+    MOTOR_LOST = 7
 
 
 class Reason(IntEnum):
@@ -55,6 +58,7 @@ class Reason(IntEnum):
     START_TIME = 12
     KNOT_COUNT = 13
     STILL_MOVING = 14
+    SEGMENT_TIME = 15
 
 
 @message(0x01)
@@ -199,3 +203,13 @@ class Telemetry:
     bad_frames: int = wire("H")
     position_urad: Urads = wire("i", per_joint=True)
     command_urad: Urads = wire("i", per_joint=True)
+
+
+@message(0x48)
+class Health:
+    """Controller, unasked, 10 times a second: its motors, and the gaps in what it heard."""
+
+    device_us: int = wire("Q")
+    gaps: int = wire("H")
+    current_ma: tuple[int, ...] = wire("h", per_joint=True)
+    temperature_c: tuple[int, ...] = wire("b", per_joint=True)

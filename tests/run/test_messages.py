@@ -14,19 +14,25 @@ RANGES = {
     "Q": st.integers(0, 2**64 - 1),
     "16s": st.binary(min_size=16, max_size=16),
 }
-URAD = st.integers(-(2**31), 2**31 - 1)
+SIGNED = {"i": 32, "h": 16, "b": 8}
 ALL = sorted(KINDS, key=lambda cls: KINDS[cls].code)
+
+
+def signed(code, joints):
+    edge = 2 ** (SIGNED[code] - 1)
+    return st.tuples(*[st.integers(-edge, edge - 1)] * joints)
 
 
 @st.composite
 def any_message(draw):
     cls = draw(st.sampled_from(ALL))
     joints = draw(st.integers(1, MAX_JOINTS))
-    column = st.tuples(*[URAD] * joints)
     return cls(
         **{
             field.name: draw(
-                column if field.metadata["per_joint"] else RANGES[field.metadata["code"]]
+                signed(field.metadata["code"], joints)
+                if field.metadata["per_joint"]
+                else RANGES[field.metadata["code"]]
             )
             for field in cls.__dataclass_fields__.values()
         }
@@ -46,7 +52,7 @@ def test_type_bytes_are_unique_and_stable():
         "Hello": 0x01, "AskLimits": 0x02, "Ping": 0x03, "Hold": 0x04, "Estop": 0x05,
         "Arm": 0x10, "Knot": 0x11, "Start": 0x12, "End": 0x13, "Clear": 0x14,
         "Welcome": 0x40, "Limits": 0x41, "Pong": 0x42, "Ack": 0x43, "Nak": 0x44,
-        "Refused": 0x45, "NoSession": 0x46, "Telemetry": 0x47,
+        "Refused": 0x45, "NoSession": 0x46, "Telemetry": 0x47, "Health": 0x48,
     }  # fmt: skip
     assert len(CLASSES) == len(KINDS)
 

@@ -31,6 +31,8 @@ from fpcad.run.sim.states import NEXT
 from tests.run.fixtures import hand_limits, swing
 from tests.run.virtual import controller
 
+pytestmark = pytest.mark.usefixtures("each_controller")
+
 SESSION = 21
 KNOTS = to_wire(swing()).messages
 
@@ -129,6 +131,8 @@ def shifted(joint, urad):
             Reason.BUFFER_FULL,
             0,
         ),
+        ([knot(0)], knot(2_999), Reason.SEGMENT_TIME, 0),
+        ([knot(0)], knot(10_000_001), Reason.SEGMENT_TIME, 0),
         ([knot(0)], Start(1_000_000), Reason.TOO_LITTLE_PREFILL, 0),
         ([knot(0), knot(600_000)], Start(0), Reason.START_TIME, 0),
         ([knot(0), knot(600_000)], Start(2**63), Reason.START_TIME, 0),
@@ -201,12 +205,19 @@ def test_torque_is_off_after_an_emergency_stop_and_returns_at_the_present_postur
         bench.device.tick()
     bench.ask(Clear())
     assert bench.device.plant.torque_on and bench.device.state is State.READY
-    np.testing.assert_array_equal(bench.device.follower.command, bench.device.plant.position)
+    np.testing.assert_array_equal(bench.device.follower.command, bench.device.measured)
 
 
 def test_a_controller_that_is_not_homed_does_not_arm():
     bench = Bench(homed=False)
     assert bench.ask(Arm()).state == State.IDLE
+
+
+def test_clearing_an_emergency_stop_homes_nothing():
+    bench = Bench(homed=False)
+    bench.ask(Estop())
+    bench.ask(Clear())
+    assert bench.device.state is State.IDLE
 
 
 def test_the_controller_survives_noise():

@@ -36,6 +36,8 @@ from tests.run.virtual import (
     lost_frames,
 )
 
+pytestmark = pytest.mark.usefixtures("each_controller")
+
 KNOTS = swing(4.0, 101)
 WIRE = from_wire(to_wire(KNOTS).messages)
 
@@ -257,9 +259,7 @@ def test_an_underrun_is_named():
 
     def starve(sample):
         if sample.state == "RUNNING":
-            line.device.follower._knots = type(line.device.follower._knots)(
-                list(line.device.follower._knots)[:3]
-            )
+            line.device.follower.keep(3)
 
     with pytest.raises((ControllerHeld, CommandRefused), match="underrun"):
         driver.play(KNOTS, Watch(starve, lambda: 0))

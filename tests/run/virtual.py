@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from fpcad.run.port import READ_WAIT_S
 from fpcad.run.sim.controller import TICK_HZ, Controller, ControllerSetup
@@ -18,17 +19,25 @@ def untouched(data: bytes) -> bytes:
     return data
 
 
-def controller(**changes) -> Controller:
+def simulated_controller(**changes) -> Controller:
     start = changes.pop("start_rad", swing().position[0])
     setup = {"limits": hand_limits(), "boot_nonce": 7, **changes}
     return Controller(ControllerSetup(**setup), Plant(start))
+
+
+maker: Callable[..., Any] = simulated_controller
+"""Who makes controllers: `each_controller` of conftest.py lets tests run on the firmware too."""
+
+
+def controller(**changes) -> Any:
+    return maker(**changes)
 
 
 @dataclass
 class VirtualLine:
     """Transport and clock: reading lets time pass, and with it the controller."""
 
-    device: Controller = field(default_factory=controller)
+    device: Any = field(default_factory=controller)
     to_device: Damage = untouched
     to_host: Damage = untouched
     baud_rate: int | None = None

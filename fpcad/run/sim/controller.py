@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fpcad.run.codec import CLASSES, KINDS, MalformedMessage, decode, encode
 from fpcad.run.framing import PROTOCOL_VERSION, Frame, FrameReader, encode_frame
@@ -19,9 +20,11 @@ from fpcad.run.messages import (
     Clear,
     End,
     Estop,
+    Health,
     Hello,
     Hold,
     Knot,
+    Nak,
     NoSession,
     Ping,
     Pong,
@@ -39,6 +42,10 @@ from fpcad.run.sim.states import NEXT
 
 TICK_HZ = 250
 _TELEMETRY_TICKS = 5
+_HEALTH_TICKS = 25
+_MA_PER_NM = 930
+"""What a servo of 2.9 N m at 2.7 A draws."""
+_AMBIENT_C = 25
 _PREFILL_US = 500_000
 _START_WINDOW_US = (0, 60_000_000)
 """How far ahead of the controller's clock a Start may lie."""
@@ -75,7 +82,13 @@ class Controller:
         self._session = 0
         self._sequence = Sequence()
         self._reader = FrameReader()
+        self._gaps = 0
         self._output = bytearray()
+
+    @property
+    def measured(self) -> NDArray[np.float64]:
+        """Where the joints are as far as the controller knows (n,) [rad]."""
+        return self.plant.position
 
     @property
     def moving(self) -> bool:
@@ -105,6 +118,8 @@ class Controller:
         self._supervise()
         if self._session and self.time_us * TICK_HZ // 1_000_000 % _TELEMETRY_TICKS == 0:
             self._send(self._telemetry())
+        if self._session and self.time_us * TICK_HZ // 1_000_000 % _HEALTH_TICKS == 0:
+            self._send(self._health())
 
     def _set_off_if_due(self) -> None:
         if self.time_us >= self._start_us:
@@ -179,6 +194,7 @@ class Controller:
     def _on_session_frame(self, frame: Frame, cls: type) -> None:
         if KINDS[cls].sequenced:
             reply = self._sequence.take(frame, self._perform)
+            self._gaps += isinstance(reply, Nak)
             if reply is not None:
                 self._send(self._ack() if reply is DONE else reply)
             return
@@ -213,7 +229,8 @@ class Controller:
             return Reason.WRONG_STATE, 0
         refusal = self._act(msg)
         if refusal is None:
-            self.state = following
+            unhomed = following is State.READY and not self._setup.homed
+            self.state = State.IDLE if unhomed else following
         return refusal
 
     def _act(self, msg: Any) -> tuple[Reason, int] | None:
@@ -263,6 +280,14 @@ class Controller:
             self._reader.bad_frames & 0xFFFF,
             to_counts(self.plant.position),
             to_counts(follower.command if at_rest else self.plant.position),
+        )
+
+    def _health(self) -> Health:
+        return Health(
+            self.time_us,
+            self._gaps & 0xFFFF,
+            tuple(int(x) for x in self.plant.torque * _MA_PER_NM),
+            (_AMBIENT_C,) * len(self.plant.position),
         )
 
     def _send(self, msg: Any, session: int | None = None) -> None:

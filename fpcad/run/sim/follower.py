@@ -19,6 +19,9 @@ START_DISTANCE_RAD = np.radians(2.0)
 """Largest distance between the first knot and where the joints are."""
 _STARVING_US = 200_000
 """Path left at which waiting for more knots must end: enough to slow down on."""
+SEGMENT_US = (3_000, 10_000_000)
+"""Shortest and longest segment: a shorter one would be all rounding, a longer one does not fit the
+firmware's fixed point."""
 _FASTEST_BRAKING = 20.0
 """Largest loss of path rate [1/s]: from full speed to rest in 50 ms where the joints can."""
 
@@ -42,6 +45,11 @@ class PathFollower:
         self.ended = False
         self.command = np.array(position, dtype=float)
         self.command_velocity = np.zeros_like(self.command)
+
+    def keep(self, count: int) -> None:
+        """Lose all knots but the first ones, as a fault of memory would."""
+        while len(self._knots) > count:
+            self._knots.pop()
 
     @property
     def free(self) -> int:
@@ -166,6 +174,8 @@ class PathFollower:
             return Reason.TIME_NOT_INCREASING, 0
         if knot.t_us <= self._path_us:
             return Reason.LATE, 0
+        if not SEGMENT_US[0] <= knot.t_us - self._knots[-1].t_us <= SEGMENT_US[1]:
+            return Reason.SEGMENT_TIME, 0
         violation = first_violation(from_wire((self._knots[-1], knot)), self._limits)
         return None if violation is None else (violation.reason, violation.joint)
 

@@ -32,6 +32,7 @@ class Plant:
     def __init__(self, position_rad: Array, physics: JointPhysics | None = None) -> None:
         self.position = np.array(position_rad, dtype=float)  # (n,) [rad]
         self.velocity = np.zeros_like(self.position)  # (n,) [rad/s]
+        self.torque = np.zeros_like(self.position)  # (n,) of the motors [N m]
         self.torque_on = True
         self._physics = physics or JointPhysics()
         self._jammed = np.zeros(len(self.position), dtype=bool)
@@ -48,11 +49,12 @@ class Plant:
 
     def _substep(self, goal: Array, goal_rate: Array, dt: float) -> None:
         physics = self._physics
-        torque = -physics.viscous_nm_s_rad * self.velocity
+        self.torque = np.zeros_like(self.position)
         if self.torque_on:
             wanted = physics.stiffness_nm_rad * (goal - self.position)
             wanted += physics.damping_nm_s_rad * (goal_rate - self.velocity)
-            torque += np.clip(wanted, -physics.torque_limit_nm, physics.torque_limit_nm)
+            self.torque = np.clip(wanted, -physics.torque_limit_nm, physics.torque_limit_nm)
+        torque = self.torque - physics.viscous_nm_s_rad * self.velocity
         free = self.velocity + torque / physics.inertia_kg_m2 * dt
         # Dry friction takes speed away but never reverses it: a joint can stick.
         braking = physics.coulomb_nm / physics.inertia_kg_m2 * dt

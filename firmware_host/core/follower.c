@@ -1,0 +1,240 @@
+#include "follower.h"
+
+#include <string.h>
+
+#include "fixed.h"
+
+#define START_DISTANCE 34906     /* 2 degrees */
+#define STARVING_US 200000       /* enough to slow down on */
+#define FASTEST_BRAKING 20       /* loss of rate a second: from full speed to rest in 50 ms */
+#define BRAKING_BITS 16
+
+static const struct knot *knot_at(const struct follower *follower, uint16_t place)
+{
+    return &follower->queue[(follower->first + place) % QUEUE_KNOTS];
+}
+
+static const struct knot *last_knot(const struct follower *follower)
+{
+    return knot_at(follower, (uint16_t)(follower->queued - 1));
+}
+
+static bool at_rest(const struct knot *knot, uint8_t joints)
+{
+    for (uint8_t i = 0; i < joints; i++) {
+        if (knot->velocity_urad_s[i] != 0 || knot->acceleration_urad_s2[i] != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void follower_rest_at(struct follower *follower, const int32_t *position)
+{
+    follower->first = follower->queued = 0;
+    follower->accepted = 0;
+    follower->segment_us = 0;
+    follower->path = 0;
+    follower->rate = 0;
+    follower->stopping = follower->ended = false;
+    memmove(follower->command, position, sizeof follower->command);
+    memset(follower->command_velocity, 0, sizeof follower->command_velocity);
+}
+
+int64_t follower_path_us(const struct follower *follower)
+{
+    return (follower->path + (1 << 15)) >> 16;
+}
+
+int64_t follower_queued_us(const struct follower *follower)
+{
+    if (follower->queued == 0) {
+        return 0;
+    }
+    return (int64_t)last_knot(follower)->t_us - follower_path_us(follower);
+}
+
+uint16_t follower_free(const struct follower *follower)
+{
+    return (uint16_t)(follower->setup->buffer_knots - follower->queued);
+}
+
+bool follower_starving(const struct follower *follower)
+{
+    return !follower->ended && follower_queued_us(follower) < STARVING_US;
+}
+
+bool follower_arrived(const struct follower *follower)
+{
+    return follower->ended && follower_queued_us(follower) <= 0;
+}
+
+static struct violation first_refusal(
+    const struct follower *follower, const struct knot *knot, const int32_t *present)
+{
+    uint8_t joints = follower->setup->joints, worst = 0;
+    int64_t farthest = 0;
+    if (knot->t_us != 0) {
+        return (struct violation){REASON_TIME_NOT_INCREASING, 0};
+    }
+    if (!at_rest(knot, joints)) {
+        return (struct violation){REASON_NOT_AT_REST, 0};
+    }
+    for (uint8_t i = 0; i < joints; i++) {
+        int64_t distance = (int64_t)knot->position_urad[i] - present[i];
+        distance = distance < 0 ? -distance : distance;
+        if (distance > farthest) {
+            farthest = distance;
+            worst = i;
+        }
+    }
+    if (farthest > START_DISTANCE) {
+        return (struct violation){REASON_TOO_FAR_FROM_START, worst};
+    }
+    return (struct violation){0, 0};
+}
+
+static struct violation next_refusal(const struct follower *follower, const struct knot *knot)
+{
+    const struct knot *last = last_knot(follower);
+    if (knot->t_us <= last->t_us) {
+        return (struct violation){REASON_TIME_NOT_INCREASING, 0};
+    }
+    if (knot->t_us <= (uint64_t)follower_path_us(follower)) {
+        return (struct violation){REASON_LATE, 0};
+    }
+    return segment_violation(last, knot, follower->setup->joints, &follower->setup->limits);
+}
+
+struct violation follower_offer(
+    struct follower *follower, const struct knot *knot, const int32_t *present)
+{
+    struct violation refusal = {0, 0};
+    if (follower->ended) {
+        refusal.reason = REASON_KNOT_COUNT;
+    } else if (follower_free(follower) == 0) {
+        refusal.reason = REASON_BUFFER_FULL;
+    } else if (follower->queued == 0) {
+        refusal = first_refusal(follower, knot, present);
+    } else {
+        refusal = next_refusal(follower, knot);
+    }
+    if (refusal.reason == 0) {
+        follower->queue[(follower->first + follower->queued) % QUEUE_KNOTS] = *knot;
+        follower->queued++;
+        follower->accepted++;
+    }
+    return refusal;
+}
+
+uint8_t follower_end(struct follower *follower, uint32_t count)
+{
+    if (count != follower->accepted || follower->queued < 2) {
+        return REASON_KNOT_COUNT;
+    }
+    if (!at_rest(last_knot(follower), follower->setup->joints)) {
+        return REASON_NOT_AT_REST;
+    }
+    follower->ended = true;
+    return 0;
+}
+
+void follower_start(struct follower *follower)
+{
+    follower->rate = FULL_RATE;
+}
+
+void follower_stop(struct follower *follower)
+{
+    follower->stopping = true;
+}
+
+static void enter_segment(struct follower *follower)
+{
+    while (follower->queued > 2 && knot_at(follower, 1)->t_us <= (uint64_t)(follower->path >> 16)) {
+        follower->first = (uint16_t)((follower->first + 1) % QUEUE_KNOTS);
+        follower->queued--;
+        follower->segment_us = 0;
+    }
+    if (follower->segment_us != 0) {
+        return;
+    }
+    const struct knot *from = knot_at(follower, 0), *to = knot_at(follower, 1);
+    follower->segment_us = (int32_t)(to->t_us - from->t_us);
+    for (uint8_t i = 0; i < follower->setup->joints; i++) {
+        struct hermite ends;
+        hermite_of(from, to, i, follower->segment_us, &ends);
+        quintic_of(&ends, &follower->segment[i]);
+    }
+}
+
+/* Where the last knot's velocity leads when the path is used up while braking. */
+static struct motion beyond(const struct follower *follower, uint8_t joint, int64_t late_us)
+{
+    const struct knot *last = knot_at(follower, 1);
+    struct motion motion = {.position = last->position_urad[joint]};
+    if (!follower->ended) {
+        motion.velocity = last->velocity_urad_s[joint];
+        motion.position += (int32_t)(motion.velocity * late_us / US_PER_S);
+    }
+    return motion;
+}
+
+/* Motion by path time of one joint in the present segment. */
+static struct motion sample(const struct follower *follower, uint8_t joint)
+{
+    int64_t elapsed = (follower->path >> 16) - (int64_t)knot_at(follower, 0)->t_us;
+    if (elapsed > follower->segment_us) {
+        return beyond(follower, joint, elapsed - follower->segment_us);
+    }
+    uint32_t share = quintic_share((int32_t)elapsed, follower->segment_us);
+    return quintic_at(&follower->segment[joint], share, follower->segment_us);
+}
+
+static int32_t times_rate(int32_t value, int32_t rate)
+{
+    return (int32_t)((int64_t)value * rate >> 30);
+}
+
+/* Fastest loss of rate that keeps |q'' rate^2 + q' rate'| within the limits [2^-16 / s]. */
+static int32_t braking(struct follower *follower)
+{
+    int64_t strongest = (int64_t)FASTEST_BRAKING << BRAKING_BITS;
+    int32_t rate = follower->rate;
+    enter_segment(follower);
+    for (uint8_t i = 0; i < follower->setup->joints; i++) {
+        struct motion motion = sample(follower, i);
+        if (motion.velocity == 0) {
+            continue;
+        }
+        int32_t bend = times_rate(times_rate(motion.acceleration, rate), rate);
+        int64_t spare = follower->setup->limits.acceleration[i];
+        spare += motion.velocity > 0 ? bend : -(int64_t)bend;
+        int64_t own = spare * (1 << BRAKING_BITS) / magnitude(motion.velocity);
+        strongest = own < strongest ? own : strongest;
+    }
+    return strongest < 0 ? 0 : (int32_t)strongest;
+}
+
+void follower_step(struct follower *follower, int32_t dt_us)
+{
+    int32_t rate = follower->rate;
+    if (rate == 0) {
+        return;
+    }
+    if (follower->stopping) {
+        int64_t loss = (int64_t)braking(follower) * dt_us / US_PER_S * (1 << (30 - BRAKING_BITS));
+        rate = loss < rate ? (int32_t)(rate - loss) : 0;
+    }
+    follower->path += (((int64_t)follower->rate + rate) / 2 * dt_us) >> 14;
+    follower->rate = rate;
+    enter_segment(follower);
+    for (uint8_t i = 0; i < follower->setup->joints; i++) {
+        struct motion motion = sample(follower, i);
+        follower->command[i] = motion.position;
+        follower->command_velocity[i] = times_rate(motion.velocity, rate);
+    }
+    if (follower_arrived(follower)) {
+        follower->rate = 0;
+    }
+}

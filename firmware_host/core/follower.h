@@ -1,0 +1,53 @@
+/* Follows queued knots in time, and can leave time behind: it slows down along the path. */
+#ifndef FOLLOWER_H
+#define FOLLOWER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hand_setup.h"
+#include "limits.h"
+#include "quintic.h"
+
+#ifndef QUEUE_KNOTS
+#define QUEUE_KNOTS 64
+#endif
+
+#define FULL_RATE ((int32_t)1 << 30)
+
+struct follower {
+    const struct hand_setup *setup;
+    struct knot queue[QUEUE_KNOTS];
+    uint16_t first;
+    uint16_t queued;
+    uint32_t accepted;
+    struct quintic segment[MAX_JOINTS];
+    int32_t segment_us; /* 0: the present segment's quintics are not made yet */
+    int64_t path;       /* place on the path [2^-16 us] */
+    int32_t rate;       /* pace along the path [2^-30] */
+    bool stopping;
+    bool ended;
+    int32_t command[MAX_JOINTS];
+    int32_t command_velocity[MAX_JOINTS];
+};
+
+/* Forget all knots; the command becomes `position` at rest. */
+void follower_rest_at(struct follower *follower, const int32_t *position);
+/* Take a knot, or say why not; `present` is where the joints are. */
+struct violation follower_offer(
+    struct follower *follower, const struct knot *knot, const int32_t *present);
+/* Take the announcement that `count` knots were all; 0 or the reason why not. */
+uint8_t follower_end(struct follower *follower, uint32_t count);
+void follower_start(struct follower *follower);
+void follower_stop(struct follower *follower);
+void follower_step(struct follower *follower, int32_t dt_us);
+
+int64_t follower_path_us(const struct follower *follower);
+/* Path time ahead. */
+int64_t follower_queued_us(const struct follower *follower);
+uint16_t follower_free(const struct follower *follower);
+/* Whether the path ends soon though its end was not announced. */
+bool follower_starving(const struct follower *follower);
+bool follower_arrived(const struct follower *follower);
+
+#endif

@@ -1,0 +1,46 @@
+#include "guard.h"
+
+#include "fixed.h"
+
+/* Whether a condition has lasted; counts how long. */
+static bool lasts(bool condition, uint8_t *ticks)
+{
+    if (!condition) {
+        *ticks = 0;
+    } else if (*ticks < GUARD_TICKS) {
+        ++*ticks;
+    }
+    return *ticks == GUARD_TICKS;
+}
+
+uint8_t guard_motors(
+    struct guard *guard, const struct hand_setup *setup, const struct motor_readings *readings)
+{
+    uint8_t cause = CAUSE_NONE;
+    for (uint8_t i = 0; i < setup->joints; i++) {
+        int16_t current = readings->current_ma[i];
+        bool strained = setup->current_ma && (current < 0 ? -current : current) > setup->current_ma;
+        bool hot = setup->temperature_c && readings->temperature_c[i] > setup->temperature_c;
+        if (lasts(strained, &guard->current_ticks[i])) {
+            cause = CAUSE_CURRENT;
+        }
+        if (lasts(hot, &guard->temperature_ticks[i])) {
+            cause = CAUSE_TEMPERATURE;
+        }
+        if (lasts(!readings->answered[i], &guard->absent_ticks[i])) {
+            cause = CAUSE_MOTOR_LOST;
+        }
+    }
+    return cause;
+}
+
+uint8_t guard_tracking(
+    const struct hand_setup *setup, const int32_t *measured, const int32_t *command)
+{
+    for (uint8_t i = 0; i < setup->joints; i++) {
+        if (magnitude(measured[i] - command[i]) > setup->tracking_error) {
+            return CAUSE_TRACKING;
+        }
+    }
+    return CAUSE_NONE;
+}

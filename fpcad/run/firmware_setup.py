@@ -1,0 +1,121 @@
+"""What the firmware is set up with for one hand: as text for the host build, as C for boards."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpcad.run.framing import PROTOCOL_VERSION
+from fpcad.run.knots import BUFFER_KNOTS
+from fpcad.run.limits import JointLimits, to_counts
+from fpcad.run.transmission import Transmission, direct, read_transmission
+
+GAIN = 1 << 24
+"""Fixed point of the transmission's gains."""
+TRACKING_LIMIT_RAD = 0.15
+
+
+@dataclass(frozen=True)
+class FirmwareSetup:
+    """Everything that differs from hand to hand and from board to board."""
+
+    limits: JointLimits
+    boot_nonce: int = 1
+    tick_hz: int = 250
+    buffer_knots: int = BUFFER_KNOTS
+    silence_us: int = 500_000
+    homed: bool = True
+    protocol: int = PROTOCOL_VERSION
+    build: bytes = b"fpcad-fw"
+    current_ma: int = 0
+    """Largest current of one motor; 0: not guarded."""
+    temperature_c: int = 0
+    """Highest temperature of one motor; 0: not guarded."""
+
+    @property
+    def transmission(self) -> Transmission:
+        """The transmission that the limits' configuration holds; without one, one to one."""
+        names = self.limits.names
+        if not self.limits.configuration.startswith(b"#"):
+            return direct(len(names))
+        return read_transmission(self.limits.configuration, names)
+
+    def numbers(self) -> dict[str, int | tuple[int, ...]]:
+        """All numbers by their names in the firmware's structure."""
+        wire, gears = self.limits.on_wire(), self.transmission
+        return {
+            "joints": len(self.limits.names),
+            "homed": int(self.homed),
+            "protocol": self.protocol,
+            "tick_hz": self.tick_hz,
+            "buffer_knots": self.buffer_knots,
+            "boot_nonce": self.boot_nonce,
+            "configuration": self.limits.hash(),
+            "build": tuple(self.build.ljust(16, b"\0")[:16]),
+            "silence_us": self.silence_us,
+            "tracking_error": round(TRACKING_LIMIT_RAD * 1e6),
+            "current_ma": self.current_ma,
+            "temperature_c": self.temperature_c,
+            "lower": wire.lower_urad,
+            "upper": wire.upper_urad,
+            "velocity": wire.velocity_urad_s,
+            "acceleration": wire.acceleration_urad_s2,
+            "group": gears.group,
+            "gain": _gains(gears, gears.matrix),
+            "inverse": _gains(gears, np.linalg.inv(gears.matrix)),
+            "offset": to_counts(gears.offset_rad),
+        }
+
+
+def setup_text(setup: FirmwareSetup, start_rad: NDArray[np.float64]) -> str:
+    """Lines `name numbers` that the host build reads; `start_rad` (n,): where its joints rest."""
+    lines = [f"{name} {_spaced(value)}" for name, value in setup.numbers().items()]
+    return "\n".join([*lines, f"start_rad {' '.join(repr(float(x)) for x in start_rad)}", ""])
+
+
+def setup_source(setup: FirmwareSetup, start_rad: Sequence[float]) -> str:
+    """A C file that defines `HAND_SETUP` and, for simulated motors, `HAND_START_RAD`."""
+    numbers = setup.numbers()
+    group = setup.transmission.group
+    for name in ("gain", "inverse"):
+        flat = numbers[name]
+        assert isinstance(flat, tuple)
+        rows = [flat[i : i + group] for i in range(0, len(flat), group)]
+        numbers[name] = tuple(_braces(row) for row in rows)  # type: ignore[assignment]
+    inner = {
+        "limits": ("lower", "upper", "velocity", "acceleration"),
+        "transmission": ("group", "gain", "inverse", "offset"),
+    }
+    nested = {name for names in inner.values() for name in names}
+    lines = [f"    .{name} = {_c(value)}," for name, value in numbers.items() if name not in nested]
+    for part, names in inner.items():
+        body = "".join(f"        .{name} = {_c(numbers[name])},\n" for name in names)
+        lines.append(f"    .{part} = {{\n{body}    }},")
+    start = ", ".join(f"{float(x)!r}f" for x in start_rad)
+    return (
+        "/* Written by fpcad.run.firmware_setup for one hand. */\n"
+        '#include "hand_setup.h"\n\n'
+        "const struct hand_setup HAND_SETUP = {\n" + "\n".join(lines) + "\n};\n\n"
+        f"const float HAND_START_RAD[MAX_JOINTS] = {{{start}}};\n"
+    )
+
+
+def _gains(gears: Transmission, matrix: NDArray[np.floating]) -> tuple[int, ...]:
+    return tuple(round(float(x) * GAIN) for x in gears.blocks(matrix).ravel())
+
+
+def _spaced(value: int | tuple[int, ...]) -> str:
+    return " ".join(map(str, value)) if isinstance(value, tuple) else str(value)
+
+
+def _braces(values: Iterable[object]) -> str:
+    return "{" + ", ".join(map(str, values)) + "}"
+
+
+def _c(value: object) -> str:
+    if isinstance(value, tuple):
+        return _braces(value)
+    return f"{value}ULL" if isinstance(value, int) and value >= 2**31 else str(value)

@@ -1,0 +1,12 @@
+import pytest
+
+from tests.firmware.core import core_controller, library
+from tests.run import virtual
+
+
+@pytest.fixture(params=["simulator", "firmware"])
+def each_controller(request, monkeypatch):
+    """Runs a test on the simulated controller and on the firmware's core."""
+    if request.param == "firmware":
+        library()
+        monkeypatch.setattr(virtual, "maker", core_controller)
