@@ -82,10 +82,13 @@ def first_hand(bench: Workbench, clay_space: DesignSpace) -> FirstHand:
 
 
 @pytest.fixture(scope="session")
-def built_clay(clay: Spec, kernel_cache: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def built_clay(
+    clay: Spec, bench: Workbench, kernel_cache: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     """A finished build folder of clay with few candidates.
 
-    The first process that asks makes it; to the others, which wait, it is up to date.
+    The first process that asks makes it; to the others, which wait, it is up to date. Asking for
+    `bench` has its formulas compiled before, by one process alone.
     """
     from fpcad.pipeline.run import run_stages
     from fpcad.pipeline.stage import Build
