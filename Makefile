@@ -34,7 +34,7 @@ endif
 
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help design test lint format schema system-packages install hooks clean distclean
+.PHONY: help design test lint format schema page system-packages install hooks clean distclean
 
 help: ## Print this list.
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-16s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -58,6 +58,9 @@ format: $(READY) ## Bring the code into ruff's format and mend what ruff can men
 schema: $(INSTALLED) ## Write the JSON schema of specs, for editors, to build/spec.schema.json.
 	$(BIN)/fpcad schema > build/.spec.schema.json
 	mv build/.spec.schema.json build/spec.schema.json
+
+page: ## Build the report's script from fpcad/look/page/src; needs Node.js and npm, users do not.
+	cd fpcad/look/page && npm ci --ignore-scripts && npm run build
 
 system-packages: ## Tell which system libraries are missing on Debian or Ubuntu, and how to get them.
 	@.ci/system-packages

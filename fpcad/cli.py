@@ -95,8 +95,8 @@ def design(
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """Make the whole hand: solve, sample, evaluate, select, export."""
-    _run("export", name, build, workers, force, as_json)
+    """Make the whole hand: solve, sample, evaluate, select, export, report."""
+    _run("report", name, build, workers, force, as_json)
 
 
 @app.command()
@@ -159,6 +159,14 @@ def export(
     _run("export", name, build, workers, force, as_json)
 
 
+@app.command()
+def report(name: Design, build: BuildFolder = Path("build")) -> None:
+    """Write report.html, one page to look at a run with, finished or not."""
+    from fpcad.look.report import write_report
+
+    typer.echo(write_report(run_folder(name, build)))
+
+
 @app.command("run-trajectory")
 def run_trajectory(
     name: Design,
@@ -203,6 +211,11 @@ def spec_file(name: str) -> Path:
     return Path(name) if is_path else named
 
 
+def run_folder(name: str, build: Path) -> Path:
+    """Build folder of a design that is given by name, by spec file, or itself."""
+    return Path(name) if (Path(name) / "manifest.json").is_file() else build / Path(name).stem
+
+
 def main() -> None:
     """Entry point: errors become one message and an exit code."""
     try:
@@ -215,7 +228,7 @@ def main() -> None:
         sys.exit(INTERRUPTED)
 
 
-Verb = Literal["solve", "sample", "evaluate", "select", "export"]
+Verb = Literal["solve", "sample", "evaluate", "select", "export", "report"]
 
 
 def _run(last: Verb, name: str, folder: Path, workers: int, force: bool, as_json: bool) -> None:

@@ -27,7 +27,7 @@ def print_design(folder: Path, manifest: dict[str, Any], last: str) -> None:
         counts = ", ".join(f"{key}: {value}" for key, value in record.get("counts", {}).items())
         stages.add_row(stage, f"{record.get('seconds', 0):.1f}", counts)
     out.print(stages)
-    if last in ("select", "export"):
+    if last in ("select", "export", "report"):
         _print_selected(folder)
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from fpcad.pipeline.evaluate import EVALUATE
 from fpcad.pipeline.export import EXPORT
 from fpcad.pipeline.manifest import begin_manifest, read_manifest, record_stage
+from fpcad.pipeline.report import REPORT
 from fpcad.pipeline.sample import SAMPLE
 from fpcad.pipeline.select import SELECT
 from fpcad.pipeline.solve import SOLVE
@@ -16,7 +17,7 @@ from fpcad.pipeline.stage import Build, Stage
 from fpcad.spec.dump import dump_spec
 from fpcad.store import write_whole
 
-STAGES: tuple[Stage, ...] = (SOLVE, SAMPLE, EVALUATE, SELECT, EXPORT)
+STAGES: tuple[Stage, ...] = (SOLVE, SAMPLE, EVALUATE, SELECT, EXPORT, REPORT)
 
 
 def run_stages(build: Build, last: str, force: bool = False) -> dict[str, Any]:

@@ -119,6 +119,7 @@ class Stage:
         for text in (self.name, before, spec_hash(spec, *self.sections)):
             digest.update(text.encode() + b"\0")
         for layer in self.layers:
-            for source in sorted((PACKAGE / layer).rglob("*.py")):
+            folder = PACKAGE / layer
+            for source in sorted([*folder.rglob("*.py"), *folder.glob("page/report.*")]):
                 digest.update(source.read_bytes())
         return digest.hexdigest()

@@ -1,0 +1,212 @@
+"""One compact document of a run: everything that the page draws."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpcad.look.columns import Column
+from fpcad.look.curves import efficiency, range_shares
+from fpcad.look.groups import clusters, flat_map, representatives
+from fpcad.look.hands import hand_dimensions
+from fpcad.look.holding import HoldingForces
+from fpcad.look.kept import exact_paths, thin_paths
+from fpcad.look.meshes import chosen_meshes
+from fpcad.look.pack import Packer
+from fpcad.look.poses import layout_of, pose_states
+from fpcad.look.run import Run
+from fpcad.select.columns import flags, numbers
+from fpcad.select.scores import MEAN_SCORE
+from fpcad.spec.hand import PalmCapsule
+from fpcad.spec.templates import TEMPLATES
+from fpcad.units import RAD_PER_DEG
+
+Array = NDArray[np.float64]
+Told = dict[str, Any]
+
+FORMAT = 1
+
+
+def build_document(run: Run) -> tuple[Told, str]:
+    """What the page shows, and the block of numbers that it refers to.
+
+    Returns:
+        JSON values with references into the block, and the block in base64; see
+        :class:`fpcad.look.pack.Packer`.
+    """
+    pack = Packer()
+    labels = clusters(run.space.standardize(run.designs))
+    merit = numbers(run.table, MEAN_SCORE)
+    chosen_row = _chosen_row(run)
+    leaders = representatives(labels, merit, run.front)
+    first = [] if chosen_row is None else [chosen_row]
+    shown = first + [int(row) for row in leaders if row != chosen_row]
+    document = {
+        "format": FORMAT,
+        "name": run.spec.name,
+        "chosen": chosen_row,
+        "candidates": _candidates(run, pack, merit, labels),
+        "parameters": [_parameter(run, pack, column) for column in run.parameters],
+        "metrics": [_column(run, pack, column) for column in run.metric_columns],
+        "scores": [_column(run, pack, column) for column in run.score_columns],
+        "ends": {pose: _ends(run, pack, pose) for pose in run.poses},
+        "map": _map(run, pack),
+        "clusters": [
+            {"row": int(row), "size": int((labels == label).sum())}
+            for label, row in enumerate(leaders)
+        ],
+        "efficiency": _efficiency(run, pack),
+        "shares": _shares(run, pack),
+        "hand": _hand(run, pack),
+        "tool": run.spec.tool.model_dump(mode="json"),
+        "poses": [_pose(run, pack, pose) for pose in run.poses],
+        "exact": exact_paths(run, pack, shown),
+        "thin": thin_paths(run, pack, shown, merit),
+        "meshes": _meshes(run, pack),
+    }
+    return document, pack.text()
+
+
+def _chosen_row(run: Run) -> int | None:
+    rows = np.flatnonzero(run.ids == run.selected["id"]) if run.selected else []
+    return int(rows[0]) if len(rows) else None
+
+
+def _candidates(run: Run, pack: Packer, merit: Array, labels: NDArray[np.int64]) -> Told:
+    return {
+        "count": len(run.ids),
+        "id": pack.integers(run.ids),
+        "parent": pack.integers(run.table["parent"].to_numpy()),
+        "measured": pack.integers(np.isin(run.ids, run.metrics["id"].to_numpy())),
+        "front": pack.integers(run.front),
+        "call": pack.integers(_calls(run)),
+        "makeable": pack.integers(flags(run.table, "makeable")),
+        "cluster": pack.integers(labels),
+        "mean": pack.exact(merit),
+    }
+
+
+def _calls(run: Run) -> NDArray[np.int64]:
+    """(n,) number of the call that found each candidate, counted from 1; 0 for the first hand."""
+    calls = np.zeros(len(run.ids), dtype=np.int64)
+    accepted = run.calls["candidate"].to_numpy()
+    found = np.isin(accepted, run.ids)
+    calls[np.searchsorted(run.ids, accepted[found])] = np.flatnonzero(found) + 1
+    return calls
+
+
+def _ends(run: Run, pack: Packer, pose: str) -> Told | None:
+    """Why the paths end: words, and each candidate's word on both sides."""
+    sides = {side: f"{pose}_end_{side}" for side in ("minus", "plus")}
+    if not set(sides.values()) <= set(run.table.column_names):
+        return None
+    columns = {side: run.table[name].to_pylist() for side, name in sides.items()}
+    words = sorted({word or "" for column in columns.values() for word in column})
+    coded = {side: [words.index(word or "") for word in col] for side, col in columns.items()}
+    return {"words": words, **{side: pack.integers(codes) for side, codes in coded.items()}}
+
+
+def _column(run: Run, pack: Packer, column: Column) -> Told:
+    return {**asdict(column), "data": pack.exact(numbers(run.table, column.name))}
+
+
+def _parameter(run: Run, pack: Packer, column: Column) -> Told:
+    index = run.space.names.index(column.name)
+    bounds = [float(run.space.lower[index]), float(run.space.upper[index])]
+    return {**_column(run, pack, column), "bounds": bounds, "free": bounds[0] < bounds[1]}
+
+
+def _map(run: Run, pack: Packer) -> Told:
+    free = run.space.free
+    names = tuple(name for name, is_free in zip(run.space.names, free, strict=True) if is_free)
+    drawn = flat_map(run.space.standardize(run.designs), names, run.designs[:, free])
+    return {"points": pack.exact(drawn.points), "axes": list(drawn.axes), "told": drawn.told}
+
+
+def _efficiency(run: Run, pack: Packer) -> Told:
+    found = efficiency(run)
+    curves = {"calls": found.calls, "cumulative": found.cumulative, "recent": found.recent}
+    return {"window": found.window, **{name: pack.exact(c) for name, c in curves.items()}}
+
+
+def _shares(run: Run, pack: Packer) -> Told:
+    thresholds, shares = range_shares(run)
+    return {
+        "thresholds": pack.exact(thresholds),
+        "poses": {pose: pack.exact(share) for pose, share in shares.items()},
+    }
+
+
+def _hand(run: Run, pack: Packer) -> Told:
+    names, sizes = TEMPLATES[run.spec.hand.template], hand_dimensions(run)
+    limits = run.spec.hand.joint_limits_deg
+    palm = [
+        {
+            "name": solid.name,
+            "start": _finger_of(solid.start if isinstance(solid, PalmCapsule) else solid.at),
+            "end": _finger_of(solid.end if isinstance(solid, PalmCapsule) else solid.at),
+            "offset": list(solid.offset_mm),
+            "radius": solid.radius_mm,
+        }
+        for solid in run.spec.hand.palm
+    ]
+    return {
+        "fingers": list(names.fingers),
+        "joints": list(names.joints),
+        "limits": [[a * RAD_PER_DEG for a in limits[joint]] for joint in names.joints],
+        "radius": pack.exact(sizes.radius_mm),
+        "proximal": pack.exact(sizes.proximal_mm),
+        "distal": pack.exact(sizes.distal_axis_mm),
+        "root_position": pack.exact(sizes.root_position_mm),
+        "root_quaternion": pack.exact(sizes.root_quaternion),
+        "palm": palm,
+    }
+
+
+def _finger_of(site: str) -> str:
+    return site.removesuffix("_root")
+
+
+def _pose(run: Run, pack: Packer, pose: str) -> Told:
+    spec, layout, y = run.spec.poses[pose], layout_of(run.spec, pose), pose_states(run, pose)
+    n = len(y)
+    designs = run.space.internal(run.designs)
+    forces = HoldingForces(run.spec, pose).at(
+        designs, y[:, layout.hand], np.zeros(n), y[:, layout.hand.stop :], np.ones(n)
+    )
+    contacts = y[:, layout.contacts].reshape(n, layout.n_contacts, 4)[:, :, :2]
+    return {
+        "name": pose,
+        "description": spec.description,
+        "contacts": [{"finger": c.finger, "link": c.link} for c in spec.contacts],
+        "axis": list(spec.turning.axis),
+        "pivot": list(spec.turning.pivot_mm),
+        "tip_force": spec.tip_force_n,
+        "position": pack.quantized(y[:, :3]),
+        "rotation": pack.quantized(y[:, 3:6]),
+        "joints": pack.quantized(y[:, layout.joints]),
+        "axial": pack.quantized(contacts[..., 0]),
+        "angle": pack.quantized(contacts[..., 1]),
+        "forces": pack.quantized(forces),
+    }
+
+
+def _meshes(run: Run, pack: Packer) -> list[Told]:
+    """The chosen hand's meshes; none before it is exported."""
+    urdf = run.folder / "hand" / "urdf" / f"{run.spec.name}.urdf"
+    exported = run.manifest["stages"].get("export", {})
+    if not urdf.exists() or exported.get("status") != "done":
+        return []
+    return [
+        {
+            "name": mesh.file,
+            "links": list(mesh.links),
+            "colour": list(mesh.colour),
+            "vertices": pack.quantized(mesh.vertices_mm),
+            "faces": pack.integers(mesh.faces),
+        }
+        for mesh in chosen_meshes(urdf)
+    ]

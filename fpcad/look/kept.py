@@ -1,0 +1,86 @@
+"""Paths on the page: a few hands' exactly, the front's as quantized keyframes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpcad.look.holding import HoldingForces
+from fpcad.look.pack import Packer
+from fpcad.look.paths import PathStates, stored_paths
+from fpcad.look.poses import layout_of, pose_states
+from fpcad.look.run import Run
+
+Array = NDArray[np.float64]
+Told = dict[str, Any]
+
+KEYFRAMES = 17
+MAX_EXACT = 12
+MAX_THIN = 4000
+"""Hands with keyframes on the page; about 1 kB each."""
+
+
+def exact_paths(run: Run, pack: Packer, rows: Sequence[int]) -> list[Told]:
+    """Every stored state of the first twelve hands in `rows`, with the forces that hold the tool."""
+    ids = {int(run.ids[row]): int(row) for row in rows[:MAX_EXACT]}
+    forces = {pose: HoldingForces(run.spec, pose) for pose in run.poses} if ids else {}
+    hands = {pose: pose_states(run, pose)[:, :6] for pose in run.poses}
+    told = []
+    for path in stored_paths(run.folder / "paths.parquet", ids):
+        row = ids[path.id]
+        design = run.space.internal(run.designs[row])
+        pull = np.where(path.tool_angle_rad < 0, -1.0, 1.0)
+        x = np.hstack([path.joints_rad, path.contacts])
+        held = forces[path.pose].at(design, hands[path.pose][row], path.tool_angle_rad, x, pull)
+        contacts = path.contacts.reshape(len(x), -1, 4)
+        told.append(
+            {
+                "row": row,
+                "pose": path.pose,
+                "turn": pack.exact(path.tool_angle_rad),
+                "position": pack.exact(hands[path.pose][row, :3]),
+                "rotation": pack.exact(hands[path.pose][row, 3:]),
+                "joints": pack.exact(path.joints_rad),
+                "axial": pack.exact(contacts[:, :, 0]),
+                "angle": pack.exact(contacts[:, :, 1]),
+                "forces": pack.exact(held),
+            }
+        )
+    return told
+
+
+def thin_paths(run: Run, pack: Packer, shown: Sequence[int], merit: Array) -> Told:
+    """Keyframes of the front's other hands; the best by mean score where they are too many."""
+    front = np.setdiff1d(np.flatnonzero(run.front), np.asarray(shown[:MAX_EXACT], dtype=int))
+    rows = np.sort(front[np.argsort(-merit[front], kind="stable")][:MAX_THIN])
+    frames: dict[str, dict[int, PathStates]] = {pose: {} for pose in run.poses}
+    for path in stored_paths(run.folder / "paths.parquet", set(run.ids[rows].tolist())):
+        frames[path.pose][path.id] = path.keyframes(KEYFRAMES)
+    kept = [row for row in rows if all(int(run.ids[row]) in f for f in frames.values())]
+    poses = {
+        pose: _frames(run, pack, pose, [found[int(run.ids[row])] for row in kept])
+        for pose, found in frames.items()
+    }
+    left_out = len(front) - len(kept)
+    told = {"rows": pack.integers(kept), "keyframes": KEYFRAMES, "left_out": left_out}
+    return {**told, "poses": poses}
+
+
+def _frames(run: Run, pack: Packer, pose: str, paths: list[PathStates]) -> Told:
+    """Arrays (hands, columns, keyframes): neighbours in time side by side deflate best."""
+    layout = layout_of(run.spec, pose)
+
+    def stacked(name: str, width: int) -> Array:
+        values = [getattr(path, name).reshape(KEYFRAMES, width).T for path in paths]
+        return np.array(values).reshape(len(paths), width, KEYFRAMES)
+
+    contacts = stacked("contacts", 4 * layout.n_contacts)
+    return {
+        "turn": pack.quantized(stacked("tool_angle_rad", 1), delta=True),
+        "joints": pack.quantized(stacked("joints_rad", layout.n_u), delta=True),
+        "axial": pack.quantized(contacts[:, 0::4], delta=True),
+        "angle": pack.quantized(contacts[:, 1::4], delta=True),
+    }

@@ -1,0 +1,90 @@
+// A hand of the template as three.js groups: the URDF's frames, its collision shapes, its meshes.
+
+import { CapsuleGeometry, Group, Mesh, SphereGeometry, Vector3 } from "three";
+
+const JOINT_AXES = ["y", "z", "y"]; // of a finger, from the root out; as in the URDF
+
+export class Hand {
+  constructor(run, row, material, meshes) {
+    const { hand } = run;
+    this.group = new Group();
+    this.links = { palm: this.group };
+    this.joints = []; // {group, axis} in the order of the state vector
+    this.shapes = new Group();
+    const roots = {};
+    hand.fingers.forEach((finger, f) => {
+      const at = (row * hand.fingers.length + f) * 3, turn = (row * hand.fingers.length + f) * 4;
+      roots[finger] = new Vector3(...hand.root_position.subarray(at, at + 3));
+      const [w, x, y, z] = hand.root_quaternion.subarray(turn, turn + 4);
+      this.#finger(finger, roots[finger], [x, y, z, w], hand, row, material);
+    });
+    for (const solid of hand.palm) this.#palmSolid(solid, roots, material);
+    this.shown = [...this.#shapesOf];
+    if (meshes.length) this.#addMeshes(meshes);
+  }
+
+  #shapesOf = [];
+
+  #finger(finger, root, quaternion, hand, row, material) {
+    const radius = hand.radius[row];
+    const base = new Group();
+    base.position.copy(root);
+    base.quaternion.set(...quaternion);
+    this.group.add(base);
+    let parent = base;
+    ["mcp", "proximal", "distal"].forEach((link, i) => {
+      const joint = new Group();
+      if (i === 2) joint.position.x = hand.proximal[row];
+      parent.add(joint);
+      this.joints.push({ group: joint, axis: JOINT_AXES[i] });
+      this.links[`${finger}_${link}`] = parent = joint;
+    });
+    this.#capsule(this.links[`${finger}_proximal`], new Vector3(), new Vector3(hand.proximal[row], 0, 0), radius, material.link);
+    this.#capsule(this.links[`${finger}_distal`], new Vector3(), new Vector3(hand.distal[row], 0, 0), radius, material.tip);
+  }
+
+  #palmSolid({ start, end, offset, radius }, roots, material) {
+    const shift = new Vector3(...offset);
+    const ends = [roots[start], roots[end]].map((root) => root.clone().add(shift));
+    this.#capsule(this.group, ...ends, radius, material.palm);
+  }
+
+  #capsule(parent, start, end, radius, material) {
+    const length = start.distanceTo(end);
+    const geometry = length ? new CapsuleGeometry(radius, length, 8, 20) : new SphereGeometry(radius, 20, 14);
+    const mesh = new Mesh(geometry, material);
+    mesh.position.copy(start).add(end).divideScalar(2);
+    if (length) mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), end.clone().sub(start).normalize());
+    parent.add(mesh);
+    this.#shapesOf.push(mesh);
+  }
+
+  #addMeshes(meshes) {
+    this.parts = meshes.flatMap(({ links, geometry, material }) =>
+      links.map((link) => {
+        const mesh = new Mesh(geometry, material);
+        this.links[link].add(mesh);
+        return mesh;
+      }));
+  }
+
+  /** Shows the printed parts, where there are any, or the contact shapes. */
+  showParts(parts) {
+    const printed = parts && this.parts !== undefined;
+    this.shown.forEach((mesh) => (mesh.visible = !printed));
+    this.parts?.forEach((mesh) => (mesh.visible = printed));
+  }
+
+  setJoints(angles) {
+    this.joints.forEach(({ group, axis }, i) => (group.rotation[axis] = angles[i]));
+  }
+
+  /** Joint angles [rad] as the scene has them. */
+  readJoints() {
+    return this.joints.map(({ group, axis }) => group.rotation[axis]);
+  }
+
+  dispose() {
+    this.shown.forEach((mesh) => mesh.geometry.dispose());
+  }
+}

@@ -1,0 +1,45 @@
+// Colours of canvases, taken from the page's style so that light, dark and print agree.
+
+import { interpolateViridis } from "d3-scale-chromatic";
+
+export function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+/** Ends of the colour map that stand out from the background: [darkest, lightest]. */
+function shades() {
+  return colour("scheme") === "dark" ? [0.2, 1] : [0, 0.86];
+}
+
+/** Colour of a score from 0 to 100; perceptually even, and so for all kinds of colour vision. */
+export function scoreColour(score) {
+  const [low, high] = shades();
+  return interpolateViridis(low + ((high - low) * score) / 100);
+}
+
+/** Calls back when light turns dark or the page is printed. */
+export function onThemeChange(redraw) {
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+  const root = document.documentElement;
+  addEventListener("beforeprint", () => {
+    root.dataset.print = "yes";
+    redraw();
+  });
+  addEventListener("afterprint", () => {
+    delete root.dataset.print;
+    redraw();
+  });
+}
+
+/** Makes a canvas fit its box at the screen's resolution; returns its context in CSS pixels. */
+export function fit(canvas, width, height) {
+  const ratio = Math.min(devicePixelRatio || 1, 2);
+  canvas.width = Math.round(width * ratio);
+  canvas.height = Math.round(height * ratio);
+  canvas.style.width = `${width}px`;
+  canvas.style.height = `${height}px`;
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return context;
+}

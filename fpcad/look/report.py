@@ -1,0 +1,52 @@
+"""report.html: one self-contained page of a run."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+
+from jinja2 import Environment, StrictUndefined
+
+from fpcad.look.document import build_document
+from fpcad.look.run import Run, load
+from fpcad.look.words import summarize
+from fpcad.store import write_whole
+
+FILE = "report.html"
+MAX_BYTES = 15_000_000
+"""What a page of 10,000 candidates stays under."""
+
+
+def write_report(folder: Path) -> Path:
+    """Write build/NAME/report.html from what the build folder holds."""
+    return write_whole(folder / FILE, report_page(load(folder)))
+
+
+def report_page(run: Run) -> str:
+    """The page as HTML. It holds its script, its style and all of its data, and loads nothing.
+
+    Texts of the spec are escaped, and the page's policy lets no script run but its own.
+    """
+    document, block = build_document(run)
+    page = files("fpcad.look") / "page"
+    script = (page / "report.js").read_text(encoding="utf-8")
+    template = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    return template.from_string((page / "report.html").read_text(encoding="utf-8")).render(
+        summary=summarize(run, document),
+        document=document,
+        version=version("fpcad"),
+        style=(page / "report.css").read_text(encoding="utf-8"),
+        script=script,
+        script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        run_json=_for_script(document),
+        block=block,
+    )
+
+
+def _for_script(value: object) -> str:
+    """JSON that cannot end the script element that holds it."""
+    return json.dumps(value, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
