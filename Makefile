@@ -34,7 +34,7 @@ endif
 
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help design test lint format schema page system-packages install hooks clean distclean
+.PHONY: help design test lint format schema page firmware soak system-packages install hooks clean distclean
 
 help: ## Print this list.
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-16s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -61,6 +61,12 @@ schema: $(INSTALLED) ## Write the JSON schema of specs, for editors, to build/sp
 
 page: ## Build the report's script from fpcad/look/page/src; needs Node.js and npm, users do not.
 	cd fpcad/look/page && npm ci --ignore-scripts && npm run build
+
+firmware: ## Build the firmware for this machine, which `fpcad run-trajectory --port fw` starts.
+	$(MAKE) -C firmware_host host
+
+soak: $(TESTABLE) firmware ## Run the long tests of link and firmware, some ten minutes; results go to the screen.
+	$(BIN)/python -m pytest -s $(wildcard tests/soak/soak_*.py) $(ARGS)
 
 system-packages: ## Tell which system libraries are missing on Debian or Ubuntu, and how to get them.
 	@.ci/system-packages

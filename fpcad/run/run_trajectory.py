@@ -19,10 +19,11 @@ from fpcad.run.port import Transport, open_port
 from fpcad.run.quintic import Knots
 from fpcad.run.report import Progress, RunReport, TelemetryLog, TrackingError
 from fpcad.run.session import HANDSHAKE_S
-from fpcad.run.sim.spawn import simulated_controller
+from fpcad.run.sim.spawn import firmware_process, simulated_controller
 from fpcad.run.trajectory import in_order, read_trajectory, repeated, require_within, slowed
 
-SIMULATED_PORT = "sim"
+SIMULATED_PORTS = {"sim": simulated_controller, "fw": firmware_process}
+"""Controllers that a run starts by itself: the simulator, and the firmware with simulated motors."""
 START_DISTANCE_RAD = float(np.radians(2.0))
 """Way to the start that a run takes unasked."""
 _APPROACH_SHARE = 0.2
@@ -68,8 +69,8 @@ def run_trajectory(
     Args:
         trajectory_file: JSON file of a build.
         limits: the hand's limits, in the controller's joint order (`read_limits`).
-        port: a serial port; `sim` starts a simulated controller, `sim:20` one that is 20 times
-            as fast as real time.
+        port: a serial port; `sim` starts a simulated controller, `fw` the firmware itself with
+            simulated motors, `sim:20` or `fw:20` the same 20 times as fast as real time.
         speed: factor of the trajectory's speed, at most 1.
         loops: how often the trajectory is run.
         move_to_start: go to the first posture slowly and straight, however far it is. Without
@@ -159,22 +160,25 @@ def _progress(sample: Sample, total_s: float, largest: float) -> Progress:
 @contextmanager
 def _transport(port: str, limits: JointLimits, posture: Array) -> Iterator[Transport]:
     """The line to a real controller, or to a simulated one whose joints rest at `posture`."""
-    if port != SIMULATED_PORT and not port.startswith(SIMULATED_PORT + ":"):
+    start = SIMULATED_PORTS.get(port.partition(":")[0])
+    if start is None:
         with closing(open_port(port)) as transport:
             yield transport
         return
     rate = _clock_rate(port)
-    with simulated_controller(limits, posture, clock_rate=rate) as device:  # noqa: SIM117
+    with start(limits, posture, clock_rate=rate) as device:  # noqa: SIM117
         with closing(open_port(device.port)) as transport:
             yield transport
 
 
 def _clock_rate(port: str) -> float:
-    text = port.removeprefix(SIMULATED_PORT).removeprefix(":") or "1"
+    name, _, text = port.partition(":")
     try:
-        rate = float(text)
+        rate = float(text or "1")
     except ValueError:
         rate = 0.0
     if not 0.1 <= rate <= 100:
-        raise PortMissing(f"{port}: a simulated port is `sim`, or `sim:RATE` with RATE 0.1 to 100")
+        raise PortMissing(
+            f"{port}: a simulated port is `{name}`, or `{name}:RATE` with RATE 0.1 to 100"
+        )
     return rate

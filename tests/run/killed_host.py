@@ -7,16 +7,16 @@ from pathlib import Path
 
 import numpy as np
 
-from fpcad.run.run_trajectory import run_trajectory
-from fpcad.run.sim.spawn import simulated_controller
+from fpcad.run.run_trajectory import SIMULATED_PORTS, run_trajectory
 from tests.run.fixtures import hand_limits, swing, write_trajectory
 
 
-def main(folder: Path) -> None:
+def main(folder: Path, port_name: str) -> None:
     knots = swing(6.0, 151)
     file = write_trajectory(folder, knots)
     start = np.array(knots.position[0])
-    with simulated_controller(hand_limits(), start, record=folder / "record.npz") as device:
+    controller = SIMULATED_PORTS[port_name]
+    with controller(hand_limits(), start, record=folder / "record") as device:
         print(device.pid, flush=True)
         run_trajectory(
             file, hand_limits(), device.port, on_progress=lambda p: print(p.path_s, flush=True)
@@ -24,4 +24,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), sys.argv[2])

@@ -71,7 +71,7 @@ def test_a_line_that_breaks_is_named():
     port.close()
 
 
-@pytest.mark.parametrize("port", ["sim:0", "sim:fast", "sim:1e9", "sim:nan"])
+@pytest.mark.parametrize("port", ["sim:0", "sim:fast", "sim:1e9", "sim:nan", "fw:0"])
 def test_a_simulated_port_has_a_sane_rate(tmp_path, port):
-    with pytest.raises(PortMissing, match="sim:RATE"):
+    with pytest.raises(PortMissing, match=r"(sim|fw):RATE"):
         run_trajectory(write_trajectory(tmp_path), hand_limits(), port)

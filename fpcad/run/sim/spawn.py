@@ -1,9 +1,11 @@
-"""Starts the simulated controller as a process of its own behind a pseudo terminal."""
+"""Starts a controller as a process of its own behind a pseudo terminal: simulator or firmware."""
 
 from __future__ import annotations
 
 import json
+import math
 import os
+import secrets
 import select
 import signal
 import subprocess
@@ -18,10 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.run.errors import SimulatorError
+from fpcad.run.firmware_setup import FirmwareSetup, setup_text
+from fpcad.run.knots import BUFFER_KNOTS
 from fpcad.run.limits import JointLimits
 
 _START_S = 30.0
-_END_S = 3.0
+_END_S = 4.0
+_ENCODER_STEP_RAD = 2 * math.pi / 4096
+"""Of the servos' magnetic encoders."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +35,8 @@ class Mishap:
     """Something that goes wrong in the controller at a time of its clock.
 
     Kinds: `silence` (neither hears nor speaks), `garbage` (sends noise), `reset` (restarts),
-    `jam` (joint number `joint` is blocked).
+    `jam` (joint number `joint` is blocked). The firmware also knows `death` (a motor neither pulls
+    nor answers), `stuck` (its encoder stands still) and `heat` (90 degrees C).
     """
 
     kind: str
@@ -96,15 +103,61 @@ def simulated_controller(
     `clock_rate` > 1 lets its time pass faster than ours. `record`: where it leaves what its joints
     did in every tick (.npz).
     """
+    setup = setup_to_json(limits, start_rad, clock_rate, mishaps, record)
+    command = [sys.executable, "-m", "fpcad.run.sim.process"]
+    with _process(command, setup + "\n") as device:
+        yield device
+
+
+@contextmanager
+def firmware_process(
+    limits: JointLimits,
+    start_rad: NDArray[np.float64],
+    *,
+    clock_rate: float = 1.0,
+    mishaps: Sequence[Mishap] = (),
+    record: Path | None = None,
+    **changes: Any,
+) -> Iterator[SimulatedDevice]:
+    """As :func:`simulated_controller`, but the firmware itself with simulated motors and tendons.
+
+    `record` becomes rows of doubles (ticks, 3 + 2 n); `changes` are of :class:`FirmwareSetup`.
+    """
+    rate = max(clock_rate, 1)  # silence and buffer are in the host's time
+    setup = FirmwareSetup(
+        limits,
+        **{
+            "boot_nonce": secrets.randbits(31),
+            "buffer_knots": round(BUFFER_KNOTS * rate),
+            "silence_us": round(500_000 * rate),
+            **changes,
+        },
+    )
+    extra = [f"clock_rate {clock_rate!r}", f"encoder_step {_ENCODER_STEP_RAD!r}"]
+    extra += [f"mishap {m.kind} {m.at_s!r} {m.joint}" for m in mishaps]
+    extra += [] if record is None else [f"record {record}"]
+    text = setup_text(setup, start_rad) + "\n".join([*extra, "end", ""])
+    with _process([str(_firmware())], text) as device:
+        yield device
+
+
+def _firmware() -> Path:
+    program = Path(__file__).parents[3] / "firmware_host" / "build" / "fpcad-firmware"
+    if not program.is_file():
+        raise SimulatorError(f"{program} is not there: build it with `make firmware`")
+    return program
+
+
+@contextmanager
+def _process(command: list[str], setup: str) -> Iterator[SimulatedDevice]:
     process = subprocess.Popen(
-        [sys.executable, "-m", "fpcad.run.sim.process"],
+        command,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
         start_new_session=True,  # Ctrl-C is for the host, which then stops the joints in order
     )
     try:
-        setup = setup_to_json(limits, start_rad, clock_rate, mishaps, record)
         yield SimulatedDevice(_port_of(process, setup), process.pid)
     finally:
         _end(process)
@@ -113,7 +166,7 @@ def simulated_controller(
 def _port_of(process: subprocess.Popen[bytes], setup: str) -> str:
     assert process.stdin is not None and process.stdout is not None
     try:
-        process.stdin.write(setup.encode() + b"\n")
+        process.stdin.write(setup.encode())
         process.stdin.flush()
     except BrokenPipeError as error:
         raise SimulatorError("the simulated controller ended before it was set up") from error
