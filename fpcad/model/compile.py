@@ -36,6 +36,7 @@ class Kernel:
     """
 
     def __init__(self, function: ca.Function) -> None:
+        self.function = function
         self._buffer, self._evaluate = function.buffer()
         self._inputs = [np.zeros(function.size1_in(i)) for i in range(function.n_in())]
         self._outputs: list[Array] = []
@@ -54,6 +55,11 @@ class Kernel:
             target[:] = value
         self._evaluate()
         return self.outputs
+
+    @property
+    def failed(self) -> bool:
+        """Whether a solver inside the function found no solution in the last call."""
+        return self._buffer.ret() != 0
 
 
 def dense_function(name: str, inputs: Sequence[ca.SX], outputs: Sequence[ca.SX]) -> ca.Function:

@@ -14,6 +14,7 @@ TORQUE_UNIT_NMM = 1000.0
 """Torques enter the programs in N m, so that all of their variables are of order one."""
 LEVER_UNIT_MM = 10.0
 """Moments enter in units of 10 N mm, for the same reason."""
+_BALANCE = np.array([1.0, 1.0, 1.0] + [1 / LEVER_UNIT_MM] * 3)
 UNBOUNDED = 1e30
 OPTIMAL = 1
 EQUALITY, INEQUALITY = 5, 0
@@ -46,20 +47,17 @@ def least_torque(
             alone still balances.
     """
     joints, edges = torque.shape
-    scaled = torque / TORQUE_UNIT_NMM
-    column = np.ones((joints, 1))
-    rows = np.vstack(
-        [
-            np.hstack([_balance(wrench), np.zeros((6, 1))]),
-            np.hstack([scaled, -column]),
-            np.hstack([-scaled, -column]),
-        ]
-    )
-    bound = np.concatenate([-_balance(load), np.zeros(2 * joints)])
+    rows = np.zeros((6 + 2 * joints, edges + 1))
+    rows[:6, :edges] = _BALANCE[:, None] * wrench
+    rows[6 : 6 + joints, :edges] = torque / TORQUE_UNIT_NMM
+    rows[6 + joints :, :edges] = -rows[6 : 6 + joints, :edges]
+    rows[6:, edges] = -1.0
+    bound = np.zeros(6 + 2 * joints)
+    bound[:6] = -_BALANCE * load
     cost = np.zeros(edges + 1)
-    cost[-1] = 1.0
+    cost[edges] = 1.0
     upper = np.full(edges + 1, UNBOUNDED)
-    upper[-1] = max_torque_nmm / TORQUE_UNIT_NMM
+    upper[edges] = max_torque_nmm / TORQUE_UNIT_NMM
     solution = _solve(cost, rows, bound, upper)
     if solution is None:
         return None
@@ -79,25 +77,17 @@ def greatest_load(wrench: Array, motor_torque: Array, load: Array, limit_nmm: Ar
         limit_nmm: (n_motors,) torque that each motor can give [N mm].
     """
     motors, edges = motor_torque.shape
-    scaled, limit = motor_torque / TORQUE_UNIT_NMM, limit_nmm / TORQUE_UNIT_NMM
-    rows = np.vstack(
-        [
-            np.hstack([_balance(wrench), _balance(load)[:, None]]),
-            np.hstack([scaled, np.zeros((motors, 1))]),
-            np.hstack([-scaled, np.zeros((motors, 1))]),
-        ]
-    )
-    bound = np.concatenate([np.zeros(6), limit, limit])
+    rows = np.zeros((6 + 2 * motors, edges + 1))
+    rows[:6, :edges] = _BALANCE[:, None] * wrench
+    rows[:6, edges] = _BALANCE * load
+    rows[6 : 6 + motors, :edges] = motor_torque / TORQUE_UNIT_NMM
+    rows[6 + motors :, :edges] = -rows[6 : 6 + motors, :edges]
+    bound = np.zeros(6 + 2 * motors)
+    bound[6 : 6 + motors] = bound[6 + motors :] = limit_nmm / TORQUE_UNIT_NMM
     cost = np.zeros(edges + 1)
-    cost[-1] = -1.0
+    cost[edges] = -1.0
     solution = _solve(cost, rows, bound, np.full(edges + 1, UNBOUNDED))
     return 0.0 if solution is None else float(solution[-1])
-
-
-def _balance(wrench: Array) -> Array:
-    """Wrench rows with moments in their own unit."""
-    scale = np.array([1.0, 1.0, 1.0] + [1 / LEVER_UNIT_MM] * 3)
-    return wrench * (scale if wrench.ndim == 1 else scale[:, None])
 
 
 def _solve(cost: Array, rows: Array, bound: Array, upper: Array) -> Array | None:
@@ -105,6 +95,8 @@ def _solve(cost: Array, rows: Array, bound: Array, upper: Array) -> Array | None
     n, m = len(cost), len(bound)
     sense = np.full(n + m, INEQUALITY, dtype=np.int32)
     sense[n : n + 6] = EQUALITY
-    lower = np.concatenate([np.zeros(n), bound[:6], np.full(m - 6, -UNBOUNDED)])
+    lower = np.full(n + m, -UNBOUNDED)
+    lower[:n] = 0.0
+    lower[n : n + 6] = bound[:6]
     x, _, flag, _ = daqp.solve(None, cost, rows, np.concatenate([upper, bound]), lower, sense)
     return x if flag == OPTIMAL else None

@@ -18,7 +18,8 @@ from fpcad.spec.catalogue import motor
 from fpcad.spec.schema import Spec
 from fpcad.spec.templates import TEMPLATES
 from fpcad.units import NM_PER_NMM, RAD_PER_DEG
-from fpcad.wield.integrate import project
+from fpcad.wield.graph import GraphSettings, step_graph
+from fpcad.wield.integrate import PROJECTION, project
 from fpcad.wield.metrics import PathMetrics, path_metrics
 from fpcad.wield.path import WieldingPath, join_traces
 from fpcad.wield.rates import Mechanism
@@ -88,9 +89,14 @@ def build_mechanism(bench: Workbench, pose: str, design: Array, y: Array) -> Mec
     """The mechanism that tool and hand form at a pose with state y."""
     settings, kernels = bench.spec.path, bench.kernels[pose]
     bounds = path_bounds(bench.spec, pose, kernels.layout)
-    hand, qp = y[:HAND_SIZE], BACKENDS[settings.qp]
     weight, fastest = settings.rate_weight, settings.max_joint_rate
-    return Mechanism(kernels, bounds, design, hand, weight, fastest, qp)
+    graph = None
+    if settings.qp == "daqp":
+        lower, upper = (tuple(bound.tolist()) for bound in bounds)
+        trust = PROJECTION.max_trust
+        graph = step_graph(kernels, GraphSettings(lower, upper, weight, fastest, trust))
+    qp = BACKENDS[settings.qp]
+    return Mechanism(kernels, bounds, design, y[:HAND_SIZE], weight, fastest, qp, graph)
 
 
 def build_load(spec: Spec, pose: str) -> Load:

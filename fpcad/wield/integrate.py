@@ -9,12 +9,17 @@ from numpy.typing import NDArray
 
 from fpcad.solve.program import build_projection_program
 from fpcad.solve.sqp import SqpSettings, restore
-from fpcad.wield.rates import End, Mechanism, Rates, solve_rates
+from fpcad.wield.graph import GraphStep
+from fpcad.wield.rates import SINGULAR_CURVATURE, End, Mechanism, Rates, solve_rates
 
 Array = NDArray[np.float64]
 
 PROJECTION = SqpSettings(feasibility=1e-9, max_trust=0.5)
 """Contact to 1e-9 mm; a correction of more than half a radian would be another path."""
+
+
+UNMET = 1e-8
+"""Violation [rad/s, mm/s] of a rate program up to which the graph's solution is taken for one."""
 
 
 class Step(NamedTuple):
@@ -50,6 +55,21 @@ def advance(
         return Step(moved, sliding)
     projected = project(m, turn + direction * dt, moved)
     return End.PROJECTION if projected is None else Step(projected, sliding)
+
+
+def step(m: Mechanism, turn: float, x: Array, direction: float, dt: float) -> Step | End:
+    """As :func:`advance`, by the mechanism's graph where it has one and finds a solution."""
+    if m.graph is not None:
+        out = GraphStep(*m.graph(m.design, m.hand, turn, x, direction, dt))
+        solved = not m.graph.failed and out.unmet[0] <= UNMET
+        if solved and out.least_determinant[0] >= SINGULAR_CURVATURE:
+            reached, sliding = out.x.copy(), out.sliding.copy()
+            if out.violation[0] <= PROJECTION.feasibility:
+                return Step(reached, sliding)
+            projected = project(m, turn + direction * dt, reached)
+            if projected is not None:
+                return Step(projected, sliding)
+    return advance(m, turn, x, direction, dt)
 
 
 def project(m: Mechanism, turn: float, guess: Array) -> Array | None:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fpcad.model.compile import Kernel
 from fpcad.model.kernels import PoseKernels
 from fpcad.solve.qp import UNBOUNDED, Backend, QuadraticProgram
 
@@ -40,6 +41,8 @@ class Mechanism:
     rate_weight: float
     max_joint_rate: float  # [rad/s] at a tool rate of 1 rad/s
     qp: Backend
+    graph: Kernel | None = None
+    """The whole step compiled for this pose, see :mod:`fpcad.wield.graph`."""
 
 
 class Rates(NamedTuple):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.model.equilibrium import greatest_load, least_torque
-from fpcad.wield.integrate import Step, advance
+from fpcad.wield.integrate import Step, step
 from fpcad.wield.rates import End, Mechanism
 
 Array = NDArray[np.float64]
@@ -78,10 +78,10 @@ def trace(m: Mechanism, load: Load, x: Array, direction: float, stepping: Steppi
 def _next(
     m: Mechanism, load: Load, state: PathState, direction: float, length: float
 ) -> PathState | End:
-    step = advance(m, state.turn, state.x, direction, length)
-    if isinstance(step, End):
-        return step
-    held = _hold(m, load, state.turn + direction * length, step, direction)
+    reached = step(m, state.turn, state.x, direction, length)
+    if isinstance(reached, End):
+        return reached
+    held = _hold(m, load, state.turn + direction * length, reached, direction)
     return End.STATICS if held is None else held
 
 
