@@ -1,0 +1,180 @@
+"""The page in a browser: one selection in all figures, and a hand that moves as its path says."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page
+
+from fpcad.look.report import report_page
+from fpcad.look.run import Run
+from fpcad.model.geometry import link_poses
+from fpcad.model.hand import hand_template
+from tests.look.conftest import show
+
+SCREENSHOTS = Path(__file__).parents[2] / "build" / "screenshots"
+"""For people to look at; continuous integration keeps them."""
+
+PLACE = """(row) => {
+  const plot = fpcad.figures.find((f) => f.box.closest("#pareto"));
+  const box = plot.box.getBoundingClientRect(), [x, y] = plot.place(row);
+  return [box.left + x, box.top + y];
+}"""
+DRAWN = """() => {
+  const marks = fpcad.figures.filter((f) => f.marks instanceof HTMLCanvasElement);
+  const curves = [...document.querySelectorAll(".lines svg")].map((svg) => svg.outerHTML);
+  return {
+    figures: [...marks.map((f) => f.marks.toDataURL()), ...curves],
+    hand: fpcad.stage.canvas.toDataURL(),
+    numbers: document.getElementById("numbers").textContent,
+  };
+}"""
+LONELY = """() => {
+  const plot = fpcad.figures.find((f) => f.box.closest("#pareto"));
+  const places = Array.from({ length: fpcad.state.count }, (_, row) => plot.place(row));
+  const gap = (row) => Math.min(...places.map(([x, y], other) => other === row ? Infinity
+    : Math.hypot(x - places[row][0], y - places[row][1])));
+  const others = places.map((_, row) => row).filter((row) => row !== fpcad.state.selected);
+  return others.reduce((best, row) => (gap(row) > gap(best) ? row : best));
+}"""
+
+
+@pytest.fixture
+def opened(page: Page, real_page: Path) -> Page:
+    return show(page, real_page)
+
+
+def test_the_page_says_nothing_on_the_console_and_asks_nobody(page: Page, real_page: Path):
+    said: list[str] = []
+    asked: list[str] = []
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.on("request", lambda request: asked.append(request.url))
+    show(page, real_page)
+    page.locator("#play").click()
+    page.locator("label.chip", has_text="printed parts").click()
+    page.wait_for_timeout(300)
+    assert said == []
+    assert asked == [real_page.as_uri()]
+
+
+def test_the_chosen_hand_is_shown_first(opened: Page, real_run: Run):
+    assert real_run.selected is not None
+    assert opened.locator("#pick").input_value() == str(real_run.selected["id"])
+    assert opened.locator("#selected-title").inner_text() == f"Hand {real_run.selected['id']}"
+
+
+def test_a_click_in_one_figure_marks_the_hand_in_all_and_changes_the_3d_view(opened: Page):
+    row = opened.evaluate(LONELY)
+    opened.locator("#pareto").scroll_into_view_if_needed()
+    before: dict[str, Any] = opened.evaluate(DRAWN)
+    opened.mouse.click(*opened.evaluate(PLACE, row))
+    after: dict[str, Any] = opened.evaluate(DRAWN)
+    assert opened.evaluate("fpcad.state.selected") == row
+    unmarked = [old == new for old, new in zip(before["figures"], after["figures"], strict=True)]
+    assert not any(unmarked)
+    assert len(unmarked) >= 9 + 4
+    assert after["hand"] != before["hand"]
+    assert after["numbers"] != before["numbers"]
+
+
+@pytest.mark.parametrize("index", [0, 1, 2])
+def test_the_slider_moves_the_fingers_along_the_stored_path(opened: Page, real_run: Run, index):
+    assert real_run.selected is not None
+    pose = real_run.poses[index]
+    path = real_run.paths(real_run.selected["id"]).to_pylist()
+    states = sorted((s for s in path if s["pose"] == pose), key=lambda s: s["state"])
+    opened.locator("label.chip", has_text=pose).click()
+    slider = opened.locator("input[type=range]")
+    assert slider.get_attribute("max") == str(len(states) - 1)
+    for k in np.linspace(0, len(states) - 1, 7).astype(int):
+        slider.fill(str(k))
+        joints = opened.evaluate("fpcad.stage.hand.readJoints()")
+        assert joints == pytest.approx(states[k]["joints_rad"], abs=1e-6)
+        shown = opened.evaluate("fpcad.player.motion.at(fpcad.player.frame).turn")
+        assert shown == pytest.approx(states[k]["tool_angle_rad"], abs=1e-6)
+
+
+def test_links_lie_where_the_model_has_them(opened: Page, real_run: Run):
+    for row, candidate in enumerate(real_run.candidates.sort_by("id").to_pylist()[:4]):
+        opened.evaluate("(row) => fpcad.state.select(row)", row)
+        joints = np.array(opened.evaluate("fpcad.stage.hand.readJoints()")).reshape(4, 3)
+        design = real_run.space.internal(np.array([candidate[n] for n in real_run.space.names]))
+        poses = link_poses(hand_template(real_run.spec.hand), design, joints)
+        for finger, links in poses.items():
+            for link, T in links.items():
+                matrix = opened.evaluate(
+                    "(link) => (fpcad.stage.scene.updateMatrixWorld(), "
+                    "fpcad.stage.hand.links[link].matrixWorld.toArray())",
+                    f"{finger}_{link}",
+                )
+                assert np.array(matrix).reshape(4, 4).T == pytest.approx(T, abs=1e-4)
+
+
+def test_playing_moves_the_tool_and_pauses(opened: Page):
+    opened.locator("#play").click()
+    start = opened.evaluate("fpcad.player.frame")
+    opened.wait_for_function("(start) => fpcad.player.frame !== start", arg=start)
+    opened.locator("#play").click()
+    assert opened.locator("#play").inner_text() == "Play"
+
+
+def test_the_keyboard_goes_from_hand_to_hand(opened: Page):
+    before = opened.evaluate("fpcad.state.selected")
+    opened.locator("#landscapes .plot").first.focus()
+    for key in ("ArrowLeft", "ArrowUp", "ArrowRight", "ArrowDown"):
+        opened.keyboard.press(key)
+        if opened.evaluate("fpcad.state.selected") != before:
+            return
+    pytest.fail("no arrow key goes to another hand")
+
+
+def test_a_typed_number_selects(opened: Page):
+    opened.locator("#pick").fill("2")
+    opened.keyboard.press("Enter")
+    assert opened.locator("#selected-title").inner_text() == "Hand 2"
+
+
+def test_a_filter_lets_pass_what_lies_inside(opened: Page, real_run: Run):
+    column = next(c for c in real_run.score_columns if c.name.endswith("tmr_score"))
+    scores = real_run.matrix([column.name])[:, 0]
+    opened.locator("summary", has_text="Filters").click()
+    opened.get_by_label(f"{column.label}, at least").fill("50")
+    opened.keyboard.press("Enter")
+    passing = opened.evaluate("Array.from(fpcad.state.passing)")
+    assert passing == [int(score >= 50) for score in scores]
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_page_fits_and_its_picture_is_kept(browser: Browser, real_page: Path, width, scheme):
+    tab = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
+    show(tab, real_page)
+    assert tab.evaluate("document.documentElement.scrollWidth") <= width
+    SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+    tab.screenshot(path=SCREENSHOTS / f"report-{width}-{scheme}.png", full_page=True)
+    tab.close()
+
+
+def test_words_of_a_spec_are_shown_and_not_run(page: Page, made_up: Run, tmp_path: Path):
+    evil = "</script><script>document.title='owned'</script><img src=x onerror=alert(1)>"
+    spec = made_up.spec.model_copy(update={"description": evil})
+    run = Run(**{**made_up.__dict__, "spec": spec})
+    file = tmp_path / "report.html"
+    file.write_text(report_page(run), encoding="utf-8")
+    show(page, file)
+    assert page.title() == "clay: design space"
+    assert evil in page.locator("header").inner_text()
+
+
+def test_numbers_of_the_page_are_the_tables(opened: Page, real_run: Run):
+    scores = opened.evaluate("fpcad.run.scores.map((s) => [s.name, Array.from(s.data)])")
+    for name, values in scores:
+        assert values == pytest.approx(real_run.matrix([name])[:, 0], rel=1e-6)
+    assert json.dumps([name for name, _ in scores]) == json.dumps(
+        [column.name for column in real_run.score_columns]
+    )
