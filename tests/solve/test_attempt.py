@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
 from fpcad.model.equilibrium import least_torque
+from fpcad.model.kernels import PoseKernels
 from fpcad.sample.space import DesignSpace
 from fpcad.solve.attempt import SolvedPose, Workbench, attempt, held, open_workbench, solve_pose
-from fpcad.solve.measure import MARGIN, NORMALS, POSITION_MM, measure
+from fpcad.solve.measure import MARGIN, NORMALS, POSITION_MM, Residual, measure
 from fpcad.solve.program import build_pose_program, pose_bounds
 from fpcad.solve.sqp import SqpSettings, solve_sqp
 from fpcad.spec.schema import Spec
@@ -205,9 +208,24 @@ class TestMeasure:
         assert found.normals == pytest.approx(1e-6, rel=1e-3)
         assert not found.acceptable
 
-    def test_a_state_out_of_bounds_does_not(self, bench: Workbench, first_hand):
+    @pytest.mark.parametrize("turns", [1, -1])
+    def test_a_state_out_of_bounds_does_not(self, bench: Workbench, first_hand, turns: int):
         """Contact 0 a turn further about the tool is the same point, but outside its window."""
-        turn = {19: 2 * np.pi}
+        turn = {19: turns * 2 * np.pi}
         found = self.judged(bench, first_hand.attempt.poses["carve"], first_hand.design, turn)
         assert found.position_mm < 1e-9 and found.bounds < -1
         assert not found.acceptable
+
+    @pytest.mark.parametrize("short", ["opposition", "skin", "clearance"])
+    def test_every_margin_counts(self, short: str):
+        """A state is as good as its least margin, of whichever kind."""
+
+        def judged(least: float) -> Residual:
+            margins = {name: np.ones(3) for name in ("opposition", "skin", "clearance")}
+            margins[short][1] = least
+            kernels = SimpleNamespace(residual=lambda *_: (np.zeros(6), *margins.values()))
+            bounds = -np.ones(4), np.ones(4)
+            return measure(cast(PoseKernels, kernels), np.zeros(6), 0.0, np.zeros(4), bounds)
+
+        assert judged(-1e-7).acceptable and judged(-1e-7).clearance_mm == -1e-7
+        assert not judged(-1e-5).acceptable

@@ -76,6 +76,21 @@ class TestAlongPaths:
             ahead = x + DT * rates_at(m, turn, x, direction).x
             assert (ahead >= m.bounds[0] - 1e-8).all() and (ahead <= m.bounds[1] + 1e-8).all()
 
+    def test_a_bound_halfway_ahead_is_respected(self, wielding, pose: str, direction: float):
+        """Every coordinate in turn gets a bound that it would pass within the step."""
+        m = wielding[pose].mechanism
+        turn, x = states(wielding[pose], direction)[2]
+        free, respected = rates_at(m, turn, x, direction).x, 0
+        for k in np.flatnonzero((np.abs(free) > 1e-3) & np.isfinite(m.bounds[0])):
+            low, high = m.bounds[0].copy(), m.bounds[1].copy()
+            (high if free[k] > 0 else low)[k] = x[k] + DT * free[k] / 2
+            rates = solve_rates(replace(m, bounds=(low, high)), turn, x, direction, DT)
+            if isinstance(rates, Rates):
+                ahead = x[k] + DT * rates.x[k]
+                assert low[k] - 1e-9 <= ahead <= high[k] + 1e-9
+                respected += 1
+        assert respected >= 8
+
     def test_no_joint_is_faster_than_allowed(self, wielding, pose: str, direction: float):
         m = replace(wielding[pose].mechanism, max_joint_rate=1.5)
         for turn, x in states(wielding[pose], direction, 3):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fpcad.model.equilibrium import greatest_load, least_torque
-from fpcad.wield.integrate import advance
+from fpcad.wield.integrate import Step, advance
 from fpcad.wield.rates import End, Mechanism
 from fpcad.wield.trace import Load, PathState, Stepping, trace
 from tests.model.plain_hand import Array, Posture
@@ -169,6 +169,22 @@ def test_a_lower_cap_ends_a_path_sooner_for_statics(wielding):
 
 def test_motion_that_cannot_go_on_ends_for_limits(wielding):
     at = wielding["press"]
-    frozen = replace(at.mechanism, max_joint_rate=1e-3)
+    frozen = replace(at.mechanism, max_joint_rate=1e-3, graph=None)
     stuck = trace(frozen, at.load, at.pose[6:], 1.0, at.stepping)
     assert stuck.end is End.RATES and len(stuck.states) == 1
+
+
+def test_the_reason_is_what_fails_just_beyond_the_end(wielding, monkeypatch: pytest.MonkeyPatch):
+    """A full step fails for another reason than one that is a little too long."""
+    at = wielding["press"]
+
+    def stubborn(m: Mechanism, turn: float, x: Array, direction: float, dt: float) -> Step | End:
+        if turn + dt > 0.016:
+            return End.RATES
+        return End.SINGULAR if turn + dt > 0.013 else Step(x, np.zeros(4))
+
+    monkeypatch.setattr("fpcad.wield.trace.step", stubborn)
+    weightless = replace(at.load, tip_force_n=0.0)
+    found = trace(at.mechanism, weightless, at.pose[6:], 1.0, Stepping(0.02, 1e-4, 1.0))
+    assert found.end is End.SINGULAR
+    assert 0.013 - 1e-4 <= found.states[-1].turn <= 0.013
