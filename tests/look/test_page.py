@@ -112,7 +112,8 @@ def test_links_lie_where_the_model_has_them(opened: Page, real_run: Run):
                     "fpcad.stage.hand.links[link].matrixWorld.toArray())",
                     f"{finger}_{link}",
                 )
-                assert np.array(matrix).reshape(4, 4).T == pytest.approx(T, abs=1e-4)
+                shown = np.array(matrix).reshape(4, 4).T
+                assert shown == pytest.approx(T, abs=1e-4)
 
 
 def test_playing_moves_the_tool_and_pauses(opened: Page):

@@ -12,7 +12,8 @@ export async function readRun() {
 }
 
 async function inflate(base64) {
-  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  const text = atob(base64), bytes = new Uint8Array(text.length);
+  for (let i = 0; i < bytes.length; i++) bytes[i] = text.charCodeAt(i);
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -48,5 +49,7 @@ function dequantize({ scale, offset, shape, delta }, steps) {
     const width = shape[shape.length - 1];
     for (let i = 0; i < steps.length; i++) if (i % width) steps[i] += steps[i - 1];
   }
-  return Float32Array.from(steps, (step) => (step === MISSING ? NaN : offset + scale * step));
+  const values = new Float32Array(steps.length); // loops: `from` with a function is ten times slower
+  for (let i = 0; i < values.length; i++) values[i] = steps[i] === MISSING ? NaN : offset + scale * steps[i];
+  return values;
 }

@@ -1,0 +1,77 @@
+"""How fast the page of a run of 10,000 hands is made, opens, and answers a click.
+
+    python -m benchmarks.report_page [HANDS]
+
+The hands are made up. Times in the browser are medians over 20 clicks, from the click's event to the
+frame that shows all marks and the other hand.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+from fpcad.look.report import write_report
+from fpcad.spec.load import load_spec
+from tests.look.conftest import BROWSERS, FLAGS
+from tests.look.made_up import write_made_up_run
+
+CLAY = Path(__file__).parents[1] / "designs" / "clay.yaml"
+CLICKS = """async () => {
+  const plot = fpcad.figures.find((f) => f.box.closest("#pareto")), count = fpcad.state.count;
+  const handled = [], shown = [];
+  const shownFrame = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+  for (let k = 1; k <= 20; k++) {
+    const box = plot.box.getBoundingClientRect(), [x, y] = plot.place((k * 487) % count);
+    await shownFrame();
+    const start = performance.now();
+    plot.box.dispatchEvent(new MouseEvent("click", { clientX: box.left + x, clientY: box.top + y }));
+    handled.push(performance.now() - start);
+    await shownFrame();
+    shown.push(performance.now() - start);
+  }
+  const median = (v) => v.sort((a, b) => a - b)[Math.floor(v.length / 2)];
+  return [median(handled), median(shown), Math.max(...shown)];
+}"""
+
+
+def main(hands: int) -> None:
+    """Print the figures, one a line."""
+    with tempfile.TemporaryDirectory() as folder:
+        spec = load_spec(CLAY)
+        run = write_made_up_run(Path(folder) / "clay", spec, hands, states=100)
+        started = time.perf_counter()
+        page = write_report(run)
+        print(f"{hands} hands: page of {page.stat().st_size / 1e6:.1f} MB made", end=" ")
+        print(f"in {time.perf_counter() - started:.1f} s")
+        measure_browser(page)
+
+
+def measure_browser(file: Path) -> None:
+    """Open the page five times, and click."""
+    program = next(filter(None, map(shutil.which, BROWSERS)))
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
+        opened = []
+        for attempt in range(5):
+            tab = browser.new_page(viewport={"width": 1280, "height": 900})
+            started = time.perf_counter()
+            tab.goto(file.as_uri())
+            tab.wait_for_selector("html[data-ready]", state="attached")
+            opened.append(1000 * (time.perf_counter() - started))
+            if attempt < 4:
+                tab.close()
+        tab.wait_for_timeout(3000)
+        handled, shown, worst = tab.evaluate(CLICKS)
+        print(f"opened in {sorted(opened)[2]:.0f} ms (median of 5, from navigation to all drawn)")
+        print(f"click: handled in {handled:.0f} ms, shown in {shown:.0f} ms, at worst {worst:.0f} ms")
+        browser.close()
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000)
