@@ -20,7 +20,7 @@ from fpcad.pipeline.tables import (
     read_call,
     read_candidate,
 )
-from fpcad.sample.rrt import ACCEPTED, Call, Proposal, efficiency, grow, stop_reason
+from fpcad.sample.rrt import ACCEPTED, Call, Proposal, grow, stop_reason
 from fpcad.sample.space import DesignSpace, design_space
 from fpcad.sample.tree import Candidate, Tree
 from fpcad.solve.attempt import Attempt, Workbench, attempt
@@ -48,7 +48,8 @@ def sample(build: Build) -> Counts:
         for batch in grow(tree, settings, partial(_solve_batch, workers, space), calls):
             pending += batch
             accepted = sum(call.outcome == ACCEPTED for call in batch)
-            bar.advance(accepted, f"{len(calls)} calls, {efficiency(calls):.0%} accepted")
+            share = (len(tree.candidates) - 1) / len(calls)
+            bar.advance(accepted, f"{len(calls)} calls, {share:.0%} accepted")
             if len(pending) >= BATCHES_PER_SHARD * settings.batch:
                 _store(build, tree, pending, space, schema)
                 pending = []

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -54,7 +54,7 @@ def step_graph(kernels: PoseKernels, settings: GraphSettings) -> Kernel:
     x = MX.sym("x", layout.size - HAND_SIZE)
     turn, direction, dt = MX.sym("turn"), MX.sym("direction"), MX.sym("dt")
     rates = _rates_function(kernels, settings)
-    stages: list[list[MX]] = []
+    stages: list[Any] = []
     for fraction in (0.0, 0.5, 0.5, 1.0):
         at = x + fraction * dt * stages[-1][0] if stages else x
         stages.append(rates(d, h, turn + direction * fraction * dt, at, direction, dt))
