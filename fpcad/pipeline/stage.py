@@ -14,9 +14,12 @@ from fpcad.solve.attempt import Workbench, open_workbench
 from fpcad.spec.dump import spec_hash
 from fpcad.spec.schema import Spec
 from fpcad.store import Shards
-from fpcad.workers import Workers, available_cores
+from fpcad.workers import Opener, ProcessPool, Workers, available_cores
 
 PACKAGE = Path(__file__).parent.parent
+
+Hire = Callable[[Opener[Workbench], int], Workers[Workbench]]
+"""Takes on a number of workers that each open a workbench."""
 
 Counts = dict[str, int | float | str]
 """What a stage tells of itself in the manifest."""
@@ -67,6 +70,8 @@ class Build:
     reporter: Reporter = field(default_factory=SilentReporter)
     keys: dict[str, str] = field(default_factory=dict)
     """Hash of each stage's inputs."""
+    hire: Hire = ProcessPool
+    """Where the workers come from; results do not depend on it."""
     _bench: Workbench | None = None
 
     @property
@@ -84,11 +89,9 @@ class Build:
         return self._bench
 
     def open_workers(self) -> Workers[Workbench]:
-        """Processes that each hold the formulas, which are compiled here before."""
-        bench = self.bench
-        if self.workers == 1:
-            return Workers(lambda: bench, 1)
-        return Workers(partial(open_workbench, self.spec, self.kernel_cache), self.workers)
+        """Workers that each hold the formulas, which are compiled here before."""
+        _ = self.bench
+        return self.hire(partial(open_workbench, self.spec, self.kernel_cache), self.workers)
 
     def shards(self, stage: str) -> Shards:
         """Running results of a stage; their folder is named after its inputs' hash."""

@@ -115,7 +115,7 @@ def _search_pose(
     while used < spec.solver.starts and len(held_poses) < ENOUGH:
         numbers = range(used, min(used + STARTS_PER_ROUND, spec.solver.starts))
         tasks = [_Start(pose, design, (*seed, number)) for number in numbers]
-        found = workers.map(partial(_try_start, judge), tasks)
+        found = workers.map(partial(_try_start, judge), tasks, lambda *_: None)
         held_poses += [result for result in found if result is not None]
         used += len(numbers)
     best = max(held_poses, key=lambda result: result[0], default=None)

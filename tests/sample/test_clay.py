@@ -17,7 +17,7 @@ from fpcad.sample.tree import Candidate, Tree
 from fpcad.solve.attempt import Attempt, Workbench, attempt, held, open_workbench
 from fpcad.spec.process import Sampling
 from fpcad.spec.schema import Spec
-from fpcad.workers import Workers
+from fpcad.workers import InProcess, ProcessPool, Workers
 from tests.model.plain_hand import Array
 
 SETTINGS = Sampling(candidates=14, seed=2)
@@ -54,7 +54,7 @@ def grown(
 @pytest.fixture(scope="module")
 def alone(bench: Workbench, clay_space: DesignSpace, first_hand) -> Grown:
     """The tree grown by this process."""
-    return grown(Workers(lambda: bench, 1), clay_space, first_hand)
+    return grown(InProcess(lambda: bench), clay_space, first_hand)
 
 
 def assert_same(one: Grown, two: Grown) -> None:
@@ -69,14 +69,14 @@ def assert_same(one: Grown, two: Grown) -> None:
 def test_two_processes_grow_the_same_tree(
     clay: Spec, kernel_cache: Path, clay_space: DesignSpace, first_hand, alone: Grown
 ):
-    with Workers(partial(open_workbench, clay, kernel_cache), 2) as workers:
+    with ProcessPool(partial(open_workbench, clay, kernel_cache), 2) as workers:
         assert_same(grown(workers, clay_space, first_hand), alone)
 
 
 def test_a_pause_changes_nothing(
     bench: Workbench, clay_space: DesignSpace, first_hand, alone: Grown
 ):
-    workers = Workers(lambda: bench, 1)
+    workers = InProcess(lambda: bench)
     tree, calls = grown(workers, clay_space, first_hand, batches=1)
     assert len(tree.candidates) < SETTINGS.candidates
     for _ in grow(tree, SETTINGS, partial(solve_batch, workers, clay_space), calls):

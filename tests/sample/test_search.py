@@ -12,7 +12,7 @@ from fpcad.sample.search import FirstHand, search_start
 from fpcad.sample.space import DesignSpace, design_space
 from fpcad.solve.attempt import Workbench, held
 from fpcad.spec.schema import Spec
-from fpcad.workers import Workers
+from fpcad.workers import InProcess
 from tests.model.plain_hand import Array
 
 
@@ -35,7 +35,7 @@ def least_joint_use(_: Workbench, __: str, ___: Array, y: Array) -> float:
 def search(bench: Workbench, spec: Spec, space: DesignSpace | None = None) -> FirstHand:
     at = replace(bench, spec=spec)
     space = space or design_space(spec.hand)
-    return search_start(Workers(lambda: at, 1), space, spec, least_joint_use, lambda *_: None)
+    return search_start(InProcess(lambda: at), space, spec, least_joint_use, lambda *_: None)
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def test_the_judge_decides(bench: Workbench, clay: Spec):
         return -least_joint_use(*arguments)
 
     least, most = (
-        search_start(Workers(lambda: at, 1), design_space(spec.hand), spec, judge, lambda *_: None)
+        search_start(InProcess(lambda: at), design_space(spec.hand), spec, judge, lambda *_: None)
         for judge in (least_joint_use, most_joint_use)
     )
     use = [np.abs(hand.attempt.poses["press"].y[6:18]).sum() for hand in (least, most)]
@@ -99,6 +99,6 @@ def test_progress_is_told(bench: Workbench, clay: Spec):
     spec = without_initial(clay, "press")
     at, space = replace(bench, spec=spec), design_space(spec.hand)
     hand = search_start(
-        Workers(lambda: at, 1), space, spec, least_joint_use, lambda *step: told.append(step)
+        InProcess(lambda: at), space, spec, least_joint_use, lambda *step: told.append(step)
     )
     assert told == [(0, "design 1, press"), (hand.starts, "")]
