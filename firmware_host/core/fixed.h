@@ -18,18 +18,6 @@ static inline int32_t to_counts(int64_t fine)
     return (int32_t)((fine + ((int64_t)1 << (FRACTION_BITS - 1))) >> FRACTION_BITS);
 }
 
-/* value * us / 1e6 without leaving 64 bits: |value| < 2^58, us < 2^24. */
-static inline int64_t times_us(int64_t value, int32_t us)
-{
-    return value / US_PER_S * us + value % US_PER_S * us / US_PER_S;
-}
-
-/* value * 1e6 / us without leaving 64 bits as long as the result fits. */
-static inline int64_t per_us(int64_t value, int32_t us)
-{
-    return value / us * US_PER_S + value % us * US_PER_S / us;
-}
-
 /* value * share / 2^31 for 0 <= share <= 2^31. */
 static inline int64_t times_q31(int64_t value, uint32_t share)
 {

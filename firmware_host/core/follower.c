@@ -33,7 +33,7 @@ void follower_rest_at(struct follower *follower, const int32_t *position)
 {
     follower->first = follower->queued = 0;
     follower->accepted = 0;
-    follower->segment_us = 0;
+    follower->span.us = 0;
     follower->path = 0;
     follower->rate = 0;
     follower->stopping = follower->ended = false;
@@ -43,7 +43,7 @@ void follower_rest_at(struct follower *follower, const int32_t *position)
 
 int64_t follower_path_us(const struct follower *follower)
 {
-    return (follower->path + (1 << 15)) >> 16;
+    return (follower->path + ((int32_t)1 << 15)) >> 16;
 }
 
 int64_t follower_queued_us(const struct follower *follower)
@@ -154,16 +154,16 @@ static void enter_segment(struct follower *follower)
     while (follower->queued > 2 && knot_at(follower, 1)->t_us <= (uint64_t)(follower->path >> 16)) {
         follower->first = (uint16_t)((follower->first + 1) % QUEUE_KNOTS);
         follower->queued--;
-        follower->segment_us = 0;
+        follower->span.us = 0;
     }
-    if (follower->segment_us != 0) {
+    if (follower->span.us != 0) {
         return;
     }
     const struct knot *from = knot_at(follower, 0), *to = knot_at(follower, 1);
-    follower->segment_us = (int32_t)(to->t_us - from->t_us);
+    follower->span = span_of((int32_t)(to->t_us - from->t_us));
     for (uint8_t i = 0; i < follower->setup->joints; i++) {
         struct hermite ends;
-        hermite_of(from, to, i, follower->segment_us, &ends);
+        hermite_of(from, to, i, &follower->span, &ends);
         quintic_of(&ends, &follower->segment[i]);
     }
 }
@@ -180,15 +180,17 @@ static struct motion beyond(const struct follower *follower, uint8_t joint, int6
     return motion;
 }
 
-/* Motion by path time of one joint in the present segment. */
-static struct motion sample(const struct follower *follower, uint8_t joint)
+/* Motion of all joints by path time, at the present place. */
+static void sample(struct follower *follower, struct motion *motion)
 {
+    enter_segment(follower);
     int64_t elapsed = (follower->path >> 16) - (int64_t)knot_at(follower, 0)->t_us;
-    if (elapsed > follower->segment_us) {
-        return beyond(follower, joint, elapsed - follower->segment_us);
+    int64_t late = elapsed - follower->span.us;
+    uint32_t share = late > 0 ? 0 : quintic_share((int32_t)elapsed, follower->span.us);
+    for (uint8_t i = 0; i < follower->setup->joints; i++) {
+        motion[i] = late > 0 ? beyond(follower, i, late)
+                             : quintic_at(&follower->segment[i], share, &follower->span);
     }
-    uint32_t share = quintic_share((int32_t)elapsed, follower->segment_us);
-    return quintic_at(&follower->segment[joint], share, follower->segment_us);
 }
 
 static int32_t times_rate(int32_t value, int32_t rate)
@@ -201,16 +203,17 @@ static int32_t braking(struct follower *follower)
 {
     int64_t strongest = (int64_t)FASTEST_BRAKING << BRAKING_BITS;
     int32_t rate = follower->rate;
-    enter_segment(follower);
+    struct motion motions[MAX_JOINTS];
+    sample(follower, motions);
     for (uint8_t i = 0; i < follower->setup->joints; i++) {
-        struct motion motion = sample(follower, i);
+        struct motion motion = motions[i];
         if (motion.velocity == 0) {
             continue;
         }
         int32_t bend = times_rate(times_rate(motion.acceleration, rate), rate);
         int64_t spare = follower->setup->limits.acceleration[i];
         spare += motion.velocity > 0 ? bend : -(int64_t)bend;
-        int64_t own = spare * (1 << BRAKING_BITS) / magnitude(motion.velocity);
+        int64_t own = spare * ((int32_t)1 << BRAKING_BITS) / magnitude(motion.velocity);
         strongest = own < strongest ? own : strongest;
     }
     return strongest < 0 ? 0 : (int32_t)strongest;
@@ -223,16 +226,16 @@ void follower_step(struct follower *follower, int32_t dt_us)
         return;
     }
     if (follower->stopping) {
-        int64_t loss = (int64_t)braking(follower) * dt_us / US_PER_S * (1 << (30 - BRAKING_BITS));
+        int64_t loss = (int64_t)braking(follower) * dt_us / US_PER_S * ((int32_t)1 << (30 - BRAKING_BITS));
         rate = loss < rate ? (int32_t)(rate - loss) : 0;
     }
     follower->path += (((int64_t)follower->rate + rate) / 2 * dt_us) >> 14;
     follower->rate = rate;
-    enter_segment(follower);
+    struct motion motions[MAX_JOINTS];
+    sample(follower, motions);
     for (uint8_t i = 0; i < follower->setup->joints; i++) {
-        struct motion motion = sample(follower, i);
-        follower->command[i] = motion.position;
-        follower->command_velocity[i] = times_rate(motion.velocity, rate);
+        follower->command[i] = motions[i].position;
+        follower->command_velocity[i] = times_rate(motions[i].velocity, rate);
     }
     if (follower_arrived(follower)) {
         follower->rate = 0;

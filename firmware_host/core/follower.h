@@ -22,7 +22,7 @@ struct follower {
     uint16_t queued;
     uint32_t accepted;
     struct quintic segment[MAX_JOINTS];
-    int32_t segment_us; /* 0: the present segment's quintics are not made yet */
+    struct span span;   /* of the present segment; us 0: its quintics are not made yet */
     int64_t path;       /* place on the path [2^-16 us] */
     int32_t rate;       /* pace along the path [2^-30] */
     bool stopping;

@@ -19,7 +19,7 @@ uint8_t guard_motors(
     uint8_t cause = CAUSE_NONE;
     for (uint8_t i = 0; i < setup->joints; i++) {
         int16_t current = readings->current_ma[i];
-        bool strained = setup->current_ma && (current < 0 ? -current : current) > setup->current_ma;
+        bool strained = setup->current_ma && (current > setup->current_ma || current < -setup->current_ma);
         bool hot = setup->temperature_c && readings->temperature_c[i] > setup->temperature_c;
         if (lasts(strained, &guard->current_ticks[i])) {
             cause = CAUSE_CURRENT;

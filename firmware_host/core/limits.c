@@ -89,37 +89,50 @@ static void differentiate(struct bernstein *curve)
     curve->degree--;
 }
 
-/* The limit as seen in derivatives by s, widened by what rounding knots to counts can do:
-   half a count at both ends of each number times the largest basis functions' derivatives. */
-static struct bounds bounds_of(
-    uint8_t order, uint8_t joint, int32_t duration_us, const struct joint_limits *limits)
+/* Limits as seen in derivatives by s, widened by what rounding knots to counts can do: half a count
+   at both ends of each number times the largest basis functions' derivatives. */
+struct slack {
+    int64_t of_order[3];
+};
+
+static struct slack slack_of(const struct span *span)
 {
     int64_t one = to_fine(1);
-    int64_t h = times_us(one, duration_us), hh = times_us(h, duration_us);
-    if (order == 0) {
-        int64_t slack = 2 * one + h;
-        return (struct bounds){
-            to_fine(limits->lower[joint]) - slack, to_fine(limits->upper[joint]) + slack};
-    }
-    int64_t limit = to_fine(order == 1 ? limits->velocity[joint] : limits->acceleration[joint]);
-    limit = times_us(limit, duration_us);
-    int64_t slack = 2 * one + 2 * h + hh;
-    if (order == 2) {
-        limit = times_us(limit, duration_us);
-        slack = 6 * one + 6 * h + 2 * hh;
-    }
-    return (struct bounds){-limit - slack, limit + slack};
+    int64_t h = span_times(span, one), hh = span_times(span, h);
+    return (struct slack){{2 * one + h, 2 * one + 2 * h + hh, 6 * one + 6 * h + 2 * hh}};
 }
 
-static bool joint_inside(
-    const struct hermite *ends, uint8_t order, const struct bounds *bounds)
+static struct bounds bounds_of(
+    uint8_t order, uint8_t joint, const struct span *span, const struct joint_limits *limits)
+{
+    if (order == 0) {
+        return (struct bounds){to_fine(limits->lower[joint]), to_fine(limits->upper[joint])};
+    }
+    int64_t limit = to_fine(order == 1 ? limits->velocity[joint] : limits->acceleration[joint]);
+    limit = span_times(span, limit);
+    if (order == 2) {
+        limit = span_times(span, limit);
+    }
+    return (struct bounds){-limit, limit};
+}
+
+/* The first order in which a joint leaves its limits: position, velocity, acceleration, none. */
+static uint8_t first_order_outside(
+    const struct hermite *ends, uint8_t joint, const struct span *span, const struct slack *slack,
+    const struct joint_limits *limits)
 {
     struct bernstein curve;
     position_curve(ends, &curve);
-    for (uint8_t i = 0; i < order; i++) {
+    for (uint8_t order = 0; order < 3; order++) {
+        struct bounds bounds = bounds_of(order, joint, span, limits);
+        bounds.lower -= slack->of_order[order];
+        bounds.upper += slack->of_order[order];
+        if (!inside(&curve, &bounds)) {
+            return order;
+        }
         differentiate(&curve);
     }
-    return inside(&curve, bounds);
+    return 3;
 }
 
 struct violation segment_violation(
@@ -129,16 +142,17 @@ struct violation segment_violation(
     if (to->t_us - from->t_us < SHORTEST_SEGMENT_US || to->t_us - from->t_us > LONGEST_SEGMENT_US) {
         return (struct violation){REASON_SEGMENT_TIME, 0};
     }
-    int32_t duration_us = (int32_t)(to->t_us - from->t_us);
-    for (uint8_t order = 0; order < 3; order++) {
-        for (uint8_t joint = 0; joint < joints; joint++) {
-            struct hermite ends;
-            hermite_of(from, to, joint, duration_us, &ends);
-            struct bounds bounds = bounds_of(order, joint, duration_us, limits);
-            if (!joint_inside(&ends, order, &bounds)) {
-                return (struct violation){(uint8_t)(REASON_POSITION_LIMIT + order), joint};
-            }
+    struct span span = span_of((int32_t)(to->t_us - from->t_us));
+    struct slack slack = slack_of(&span);
+    uint8_t worst = 3, culprit = 0;
+    for (uint8_t joint = 0; joint < joints; joint++) {
+        struct hermite ends;
+        hermite_of(from, to, joint, &span, &ends);
+        uint8_t order = first_order_outside(&ends, joint, &span, &slack, limits);
+        if (order < worst) {
+            worst = order;
+            culprit = joint;
         }
     }
-    return (struct violation){0, 0};
+    return (struct violation){worst < 3 ? (uint8_t)(REASON_POSITION_LIMIT + worst) : 0, culprit};
 }

@@ -3,7 +3,7 @@
 #include "fixed.h"
 
 void hermite_of(
-    const struct knot *from, const struct knot *to, uint8_t joint, int32_t duration_us,
+    const struct knot *from, const struct knot *to, uint8_t joint, const struct span *span,
     struct hermite *out)
 {
     const struct knot *ends[2] = {from, to};
@@ -12,8 +12,8 @@ void hermite_of(
         int64_t velocity = to_fine(knot->velocity_urad_s[joint]);
         int64_t acceleration = to_fine(knot->acceleration_urad_s2[joint]);
         out->position[end] = to_fine(knot->position_urad[joint]);
-        out->velocity[end] = times_us(velocity, duration_us);
-        out->acceleration[end] = times_us(times_us(acceleration, duration_us), duration_us);
+        out->velocity[end] = span_times(span, velocity);
+        out->acceleration[end] = span_times(span, span_times(span, acceleration));
     }
 }
 
@@ -45,13 +45,13 @@ static int64_t derivative(const struct quintic *quintic, uint8_t order, uint32_t
     return sum + FACTOR[order][order] * quintic->power[order];
 }
 
-struct motion quintic_at(const struct quintic *quintic, uint32_t share, int32_t duration_us)
+struct motion quintic_at(const struct quintic *quintic, uint32_t share, const struct span *span)
 {
-    int64_t velocity = per_us(derivative(quintic, 1, share), duration_us);
-    int64_t acceleration = per_us(derivative(quintic, 2, share), duration_us);
+    int64_t velocity = span_per(span, derivative(quintic, 1, share));
+    int64_t acceleration = span_per(span, derivative(quintic, 2, share));
     return (struct motion){
         .position = to_counts(derivative(quintic, 0, share)),
         .velocity = to_counts(velocity),
-        .acceleration = to_counts(per_us(acceleration, duration_us)),
+        .acceleration = to_counts(span_per(span, acceleration)),
     };
 }

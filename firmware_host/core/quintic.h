@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "messages.h"
+#include "span.h"
 
 /* Powers of s in [0, 1], fine counts. */
 struct quintic {
@@ -27,14 +28,14 @@ struct hermite {
     int64_t acceleration[2];
 };
 
-/* One joint of the segment between two knots that lies `duration_us` < 2^24 after the first. */
+/* One joint of the segment between two knots. */
 void hermite_of(
-    const struct knot *from, const struct knot *to, uint8_t joint, int32_t duration_us,
+    const struct knot *from, const struct knot *to, uint8_t joint, const struct span *span,
     struct hermite *out);
 void quintic_of(const struct hermite *ends, struct quintic *out);
 
 /* How far `elapsed_us` is into a segment, in 2^-31. */
 uint32_t quintic_share(int32_t elapsed_us, int32_t duration_us);
-struct motion quintic_at(const struct quintic *quintic, uint32_t share, int32_t duration_us);
+struct motion quintic_at(const struct quintic *quintic, uint32_t share, const struct span *span);
 
 #endif

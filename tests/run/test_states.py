@@ -112,36 +112,37 @@ def shifted(joint, urad):
     return position
 
 
-@pytest.mark.parametrize(
-    ("before", "message", "reason", "joint"),
-    [
-        ([], knot(1), Reason.TIME_NOT_INCREASING, 0),
-        ([], knot(0, velocity=1), Reason.NOT_AT_REST, 0),
-        ([], knot(0, acceleration=-1), Reason.NOT_AT_REST, 0),
-        ([], knot(0, shifted(4, 52_000)), Reason.TOO_FAR_FROM_START, 4),
-        ([], Knot(0, (0,) * 11, (0,) * 11, (0,) * 11), Reason.MALFORMED, 0),
-        ([knot(0)], knot(0), Reason.TIME_NOT_INCREASING, 0),
-        ([knot(0), knot(40_000)], knot(39_999), Reason.TIME_NOT_INCREASING, 0),
-        ([knot(0)], knot(40_000, shifted(7, 60_000)), Reason.VELOCITY_LIMIT, 7),
-        ([knot(0)], knot(40_000, shifted(7, 10_000)), Reason.ACCELERATION_LIMIT, 7),
-        ([knot(0)], knot(10_000_000, shifted(2, -700_000)), Reason.POSITION_LIMIT, 2),
-        (
-            [knot(0)] + [knot(40_000 * k) for k in range(1, 32)],
-            knot(2_000_000),
-            Reason.BUFFER_FULL,
-            0,
-        ),
-        ([knot(0)], knot(2_999), Reason.SEGMENT_TIME, 0),
-        ([knot(0)], knot(10_000_001), Reason.SEGMENT_TIME, 0),
-        ([knot(0)], Start(1_000_000), Reason.TOO_LITTLE_PREFILL, 0),
-        ([knot(0), knot(600_000)], Start(0), Reason.START_TIME, 0),
-        ([knot(0), knot(600_000)], Start(2**63), Reason.START_TIME, 0),
-        ([knot(0), knot(600_000)], End(3), Reason.KNOT_COUNT, 0),
-        ([knot(0)], End(1), Reason.KNOT_COUNT, 0),
-        ([knot(0), knot(600_000, velocity=1000)], End(2), Reason.NOT_AT_REST, 0),
-        ([knot(0), knot(600_000), End(2)], knot(700_000), Reason.KNOT_COUNT, 0),
-    ],
-)
+HARMFUL = [
+    ([], knot(1), Reason.TIME_NOT_INCREASING, 0),
+    ([], knot(0, velocity=1), Reason.NOT_AT_REST, 0),
+    ([], knot(0, acceleration=-1), Reason.NOT_AT_REST, 0),
+    ([], knot(0, shifted(4, 52_000)), Reason.TOO_FAR_FROM_START, 4),
+    ([], Knot(0, (0,) * 11, (0,) * 11, (0,) * 11), Reason.MALFORMED, 0),
+    ([knot(0)], knot(0), Reason.TIME_NOT_INCREASING, 0),
+    ([knot(0), knot(40_000)], knot(39_999), Reason.TIME_NOT_INCREASING, 0),
+    ([knot(0)], knot(40_000, shifted(7, 60_000)), Reason.VELOCITY_LIMIT, 7),
+    ([knot(0)], knot(40_000, shifted(7, 10_000)), Reason.ACCELERATION_LIMIT, 7),
+    ([knot(0)], knot(10_000_000, shifted(2, -700_000)), Reason.POSITION_LIMIT, 2),
+    (
+        [knot(0)] + [knot(40_000 * k) for k in range(1, 32)],
+        knot(2_000_000),
+        Reason.BUFFER_FULL,
+        0,
+    ),
+    ([knot(0)], knot(2_999), Reason.SEGMENT_TIME, 0),
+    ([knot(0)], knot(10_000_001), Reason.SEGMENT_TIME, 0),
+    ([knot(0)], Start(1_000_000), Reason.TOO_LITTLE_PREFILL, 0),
+    ([knot(0), knot(600_000)], Start(0), Reason.START_TIME, 0),
+    ([knot(0), knot(600_000)], Start(2**63), Reason.START_TIME, 0),
+    ([knot(0), knot(600_000)], End(3), Reason.KNOT_COUNT, 0),
+    ([knot(0)], End(1), Reason.KNOT_COUNT, 0),
+    ([knot(0), knot(600_000, velocity=1000)], End(2), Reason.NOT_AT_REST, 0),
+    ([knot(0), knot(600_000), End(2)], knot(700_000), Reason.KNOT_COUNT, 0),
+]
+"""What is sent to an armed controller first, what is refused then, why and for which joint."""
+
+
+@pytest.mark.parametrize(("before", "message", "reason", "joint"), HARMFUL)
 def test_what_would_do_harm_is_refused_and_changes_nothing(before, message, reason, joint):
     bench = Bench()
     bench.device.tick()

@@ -100,10 +100,11 @@ void bench_quintic(const int64_t *rows, int32_t *results, uint32_t count)
         struct quintic quintic;
         knots_of(rows, &from, &to);
         int32_t duration_us = (int32_t)(to.t_us - from.t_us);
-        hermite_of(&from, &to, 0, duration_us, &ends);
+        struct span span = span_of(duration_us);
+        hermite_of(&from, &to, 0, &span, &ends);
         quintic_of(&ends, &quintic);
         uint32_t share = quintic_share((int32_t)rows[8], duration_us);
-        struct motion motion = quintic_at(&quintic, share, duration_us);
+        struct motion motion = quintic_at(&quintic, share, &span);
         results[0] = motion.position;
         results[1] = motion.velocity;
         results[2] = motion.acceleration;

@@ -1,0 +1,70 @@
+"""Microcontrollers without a board: QEMU's Cortex-M3 and simavr's ATmega1284P."""
+
+from __future__ import annotations
+
+import re
+import select
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from fpcad.run.firmware_setup import FirmwareSetup, setup_source
+from tests.firmware.core import FIRMWARE, made
+from tests.run.fixtures import hand_limits, swing
+
+TOOLS = {
+    "mps2_an385": ("arm-none-eabi-gcc", "qemu-system-arm"),
+    "avr": ("avr-gcc",),
+}
+SETUPS = {
+    "mps2_an385": {"tick_hz": 1000, "buffer_knots": 64, "build": b"fpcad-fw arm"},
+    "avr": {"tick_hz": 50, "buffer_knots": 48, "build": b"fpcad-fw avr"},
+}
+BOOT_NONCE = 7
+
+
+def image(target: str, name: str) -> Path:
+    """An image of the firmware for the hand of the fixtures; skips where a tool is missing."""
+    for tool in TOOLS[target]:
+        if shutil.which(tool) is None:
+            pytest.skip(f"needs {tool}")
+    setup = FirmwareSetup(hand_limits(), boot_nonce=BOOT_NONCE, **SETUPS[target])
+    source = FIRMWARE / "build" / f"{target}_setup.c"
+    source.parent.mkdir(exist_ok=True)
+    text = setup_source(setup, swing().position[0].tolist())
+    if not source.is_file() or source.read_text() != text:
+        source.write_text(text)
+    return made(target, f"SETUP=build/{source.name}") / name
+
+
+@contextmanager
+def running(target: str, *, segments: bool = False) -> Iterator[str]:
+    """Name of the port at which a microcontroller that has just booted answers."""
+    elf = image(target, f"{target}{'_segments' if segments else ''}.elf")
+    if target == "avr":
+        command = [str(elf.parent / "simulate_avr"), str(elf)]
+    else:
+        machine = ["-machine", "mps2-an385", "-nographic", "-monitor", "none", "-serial", "pty"]
+        command = ["qemu-system-arm", *machine, "-kernel", str(elf)]
+    with subprocess.Popen(
+        command, 0, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    ) as process:
+        try:
+            yield _port(process)
+        finally:
+            process.kill()
+
+
+def _port(process: subprocess.Popen) -> str:
+    assert process.stdout is not None
+    while select.select([process.stdout], [], [], 10)[0]:
+        line = process.stdout.readline().decode()
+        if found := re.search(r"/dev/pts/\d+", line):
+            return found.group()
+        if not line:
+            break
+    raise RuntimeError("the target did not name its port")
