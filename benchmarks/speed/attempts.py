@@ -83,9 +83,7 @@ def contenders(bench: Workbench, cache: Path) -> list[Contender]:
         n_rows, n_margins = size
         low = np.zeros(n_rows + n_margins)
         high = np.concatenate([np.zeros(n_rows), np.full(n_margins, np.inf)])
-        solution = solver(
-            x0=task.start, p=task.design, lbx=lower, ubx=upper, lbg=low, ubg=high
-        )
+        solution = solver(x0=task.start, p=task.design, lbx=lower, ubx=upper, lbg=low, ubg=high)
         return np.array(solution["x"]).ravel()
 
     def by_slsqp(task: PoseTask) -> Array:
@@ -154,6 +152,12 @@ def _slsqp(bench: Workbench, task: PoseTask) -> Array:
     start = np.clip(task.start, program.lower, program.upper) / scale
     options = {"maxiter": 200, "ftol": 1e-10}
     result = minimize(
-        cost, start, jac=True, bounds=bounds, constraints=constraints, method="SLSQP", options=options
+        cost,
+        start,
+        jac=True,
+        bounds=bounds,
+        constraints=constraints,
+        method="SLSQP",
+        options=options,
     )
     return np.clip(result.x * scale, program.lower, program.upper)

@@ -15,8 +15,8 @@ UNBOUNDED = 1e30
 _OPTIMAL = (1, 2)
 _EQUALITY, _SOFT = 5, 8
 DAQP_SETTINGS = {"primal_tol": 1e-11, "sing_tol": 1e-15}
-"""DAQP's own defaults are 1e-6, which is what we accept in the end, and 1e-11, at which it calls
-feasible programs infeasible where the Hessian's eigenvalues span ten decades."""
+"""DAQP's own primal tolerance is 1e-6, which is what we accept in the end, and its own threshold of
+singularity calls feasible programs infeasible where the Hessian's eigenvalues span ten decades."""
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.model.compile import Kernel
+from fpcad.model.contact import NORMAL_SCALE_MM
 from fpcad.model.kernels import PoseKernels
 from fpcad.model.pose import HAND_SIZE
 
@@ -140,8 +141,15 @@ def _projected(
         uba=ca.vertcat(-c, ca.DM.inf(g.numel())),
     )["x"]
     projected = ca.fmin(ca.fmax(x + scale * step, lower), upper)
-    _, _, c, _, g, _ = kernels.constraints.function(d, turn, ca.vertcat(h, projected))
-    return projected, ca.fmax(ca.mmax(ca.fabs(c)), -ca.mmin(g))
+    return projected, _violation(kernels, d, turn, ca.vertcat(h, projected))
+
+
+def _violation(kernels: PoseKernels, d: MX, turn: MX, y: MX) -> MX:
+    """Largest deviation from contact and below zero of any margin, from the cheap residual kernel."""
+    six, opposition, skin, clearances = kernels.residual.function(d, turn, y)
+    lengths = ca.repmat(ca.DM([1.0] * 3 + [NORMAL_SCALE_MM] * 3), kernels.layout.n_contacts, 1)
+    least = ca.mmin(ca.vertcat(NORMAL_SCALE_MM * opposition, skin, clearances))
+    return ca.fmax(ca.mmax(ca.fabs(six * lengths)), -least)
 
 
 def _qp(name: str, hessian: ca.Sparsity, rows: tuple[int, int]) -> ca.Function:
