@@ -34,7 +34,7 @@ endif
 
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help design test lint format schema page firmware soak system-packages install hooks clean distclean
+.PHONY: help design test bench lint format schema page firmware soak system-packages install hooks clean distclean
 
 help: ## Print this list.
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-16s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -45,6 +45,9 @@ design: $(INSTALLED) ## Make the hand of designs/NAME.yaml in build/NAME: make d
 
 test: $(TESTABLE) ## Run the tests; ARGS are pytest's, as in: make test ARGS=tests/select
 	$(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadfile $(ARGS)
+
+bench: $(INSTALLED) ## Measure solver, paths and sampling beside their baselines; build/bench.json.
+	$(BIN)/python -m benchmarks.speed $(ARGS)
 
 lint: $(READY) ## Check style and types with ruff and pyright.
 	$(BIN)/ruff check
