@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import shutil
 import subprocess
 from functools import lru_cache
@@ -51,7 +52,9 @@ def made(target: str, *variables: str) -> Path:
 
 @lru_cache
 def library() -> ctypes.CDLL:
-    lib = ctypes.CDLL(str(made("library") / "libfpcad_firmware.so"))
+    # An instrumented build takes the usual one's place when coverage is measured.
+    built = os.environ.get("FIRMWARE_LIBRARY")
+    lib = ctypes.CDLL(built or str(made("library") / "libfpcad_firmware.so"))
     lib.bench_new.restype = ctypes.c_void_p
     lib.bench_take_output.restype = ctypes.c_uint32
     for name in ("recode", "frame", "state_after"):
