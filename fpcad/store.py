@@ -2,26 +2,52 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from fpcad.errors import StoreError
+
+LOCK = ".lock"
+PART = ".part"
+"""Ending of files that are being written."""
+
+
+@contextmanager
+def exclusive(folder: Path) -> Iterator[None]:
+    """Be the only process that writes to a folder; :class:`StoreError` where another one does.
+
+    The lock ends with the process, however it ends. What a killed one left half written is removed.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / LOCK).open("a") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise StoreError(
+                f"{folder}: another fpcad is at work here; wait for its end, or take another folder "
+                "with --build"
+            ) from None
+        for stray in folder.rglob(f".*{PART}"):
+            stray.unlink()
+        yield
 
 
 @contextmanager
 def replacing(target: Path) -> Iterator[Path]:
     """A file beside `target` to write to; it takes the target's place when the block succeeds."""
     target.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=PART)
     beside = Path(name)
     try:
         os.fchmod(handle, 0o644)
@@ -62,10 +88,21 @@ def write_table(target: Path, table: pa.Table) -> None:
         pq.write_table(table, beside, compression="zstd")
 
 
-def read_table(source: Path) -> pa.Table:
-    """Read a Parquet file; :class:`StoreError` where it is not one."""
+def write_tables(target: Path, schema: pa.Schema, tables: Iterable[pa.Table]) -> None:
+    """Write one Parquet file of many tables as a whole or not at all, one table in memory at a time."""
+    with (
+        replacing(target) as beside,
+        pq.ParquetWriter(beside, schema, compression="zstd") as writer,
+    ):
+        for table in tables:
+            if table.num_rows:
+                writer.write_table(table)
+
+
+def read_table(source: Path, rows: pc.Expression | None = None) -> pa.Table:
+    """Read a Parquet file, or only some rows of it; :class:`StoreError` where it is not one."""
     try:
-        return pq.read_table(source)
+        return pq.read_table(source, filters=rows)
     except (OSError, pa.ArrowInvalid) as error:
         raise StoreError(
             f"{source}: not readable as Parquet ({error}); make the design again"
@@ -92,10 +129,18 @@ class Shards:
         """All rows in the order in which they were appended."""
         return [row for file in self.files() for row in read_table(file).to_pylist()]
 
-    def attachments(self, name: str) -> Iterator[pa.Table]:
-        """The attachments of one name, in the order of their shards."""
-        for file in self.files():
-            yield read_table(file.with_name(f"{name}-{file.name}"))
+    def attachment(self, name: str, number: int) -> pa.Table:
+        """The attachment of a shard."""
+        return read_table(self.folder / f"{name}-{number:06d}.parquet")
+
+    def attachment_numbers(self, name: str) -> set[int]:
+        """Numbers of the shards that have an attachment of this name."""
+        return {int(file.stem.rpartition("-")[2]) for file in self.folder.glob(f"{name}-*.parquet")}
+
+    def drop_attachments(self, name: str) -> None:
+        """Remove all attachments of one name, for good."""
+        for file in self.folder.glob(f"{name}-*.parquet"):
+            file.unlink()
 
     def files(self) -> list[Path]:
         """Shards in order; :class:`StoreError` where one is missing in between."""

@@ -10,7 +10,6 @@ import trimesh
 
 from fpcad.make.bom import bill_of_materials, bom_csv
 from fpcad.make.description import JointDrive, LinkBody, urdf_text
-from fpcad.make.files import write_whole
 from fpcad.make.inertia import inertia_of
 from fpcad.make.mesh import check_apart, in_metres, stl_bytes
 from fpcad.make.parts.dimensions import finger_dimensions
@@ -26,6 +25,7 @@ from fpcad.model.transmission import (
 )
 from fpcad.spec.catalogue import Motor, motor
 from fpcad.spec.schema import Spec
+from fpcad.store import write_whole
 from fpcad.units import DEG_PER_RAD, RAD_PER_DEG
 
 log = logging.getLogger(__name__)

@@ -13,8 +13,8 @@ import yourdfpy
 from numpy.typing import NDArray
 
 from fpcad.make.description import BASE_LINK
-from fpcad.make.files import write_whole
 from fpcad.make.toolchain import pyvista
+from fpcad.store import write_whole
 
 Array = NDArray[np.float64]
 

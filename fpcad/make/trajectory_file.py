@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from fpcad.errors import StoreError
-from fpcad.make.files import write_whole
 from fpcad.make.grip import ContactLink
 from fpcad.make.trajectory import ToolMotion, Trajectory
+from fpcad.store import write_whole
 
 
 def write_trajectory(trajectory: Trajectory, file: Path) -> None:

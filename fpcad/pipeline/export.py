@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pyarrow.compute as pc
 
 from fpcad.errors import MakeError
 from fpcad.make.hand import make_hand
@@ -11,9 +10,10 @@ from fpcad.make.trajectory import Trajectory, build_trajectory
 from fpcad.make.trajectory_file import write_trajectory
 from fpcad.model.geometry import hand_geometry
 from fpcad.model.transmission import hand_transmission, single_axis_speed_limits
-from fpcad.pipeline.select import PATHS, SELECTED, refuse
+from fpcad.pipeline.evaluate import FILE as METRICS_FILE
+from fpcad.pipeline.paths import drop_spare_paths, read_paths
+from fpcad.pipeline.select import METRICS, SELECTED, refuse
 from fpcad.pipeline.stage import Build, Counts, Stage
-from fpcad.pipeline.tables import read_path
 from fpcad.sample.space import design_space
 from fpcad.spec.catalogue import motor
 from fpcad.store import read_json, read_table
@@ -29,7 +29,6 @@ def export(build: Build) -> Counts:
 
     A hand that cannot be made is refused with its reason, and the next best is chosen.
     """
-    refused = 0
     while True:
         chosen = int(read_json(build.folder / SELECTED)["id"])
         try:
@@ -37,9 +36,18 @@ def export(build: Build) -> Counts:
         except MakeError as error:
             build.reporter.note(f"hand {chosen} cannot be made: {error}")
             refuse(build, chosen, str(error))
-            refused += 1
         else:
-            return {"files": files, "selected": chosen, "refused": refused}
+            drop_spare_paths(build)
+            return {"files": files, "selected": chosen, "refused": _refused(build)}
+
+
+def _refused(build: Build) -> int:
+    """Hands that were evaluated and could not be made, those of a run that was killed among them."""
+    evaluated, makeable = (
+        sum(read_table(build.folder / file)["makeable"].to_pylist())
+        for file in (METRICS_FILE, METRICS)
+    )
+    return evaluated - makeable
 
 
 def _export_chosen(build: Build) -> int:
@@ -49,23 +57,13 @@ def _export_chosen(build: Build) -> int:
     design = space.internal(named)
     geometry = hand_geometry(build.bench.template, design)
     with build.reporter.stage("trajectories", len(build.spec.poses)) as bar:
-        for path in chosen_paths(build, int(selected["id"])):
+        for path in read_paths(build, int(selected["id"])).values():
             trajectory = make_trajectory(build, design, path)
             write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json")
             bar.advance(1, f"{path.pose}: {trajectory.duration_s:.1f} s")
     with build.reporter.stage("parts", PART_STEPS) as bar:
         files = make_hand(build.spec, geometry, build.folder, lambda step: bar.advance(1, step))
     return len(files) + len(build.spec.poses)
-
-
-def chosen_paths(build: Build, candidate: int) -> list[WieldingPath]:
-    """The paths of one candidate, in the order of the spec's poses."""
-    table = read_table(build.folder / PATHS)
-    rows = table.filter(pc.field("id") == candidate)
-    return [
-        read_path(rows.filter(pc.field("pose") == pose), kernels.layout)
-        for pose, kernels in build.bench.kernels.items()
-    ]
 
 
 def make_trajectory(build: Build, design: np.ndarray, path: WieldingPath) -> Trajectory:

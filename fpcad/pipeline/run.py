@@ -15,7 +15,7 @@ from fpcad.pipeline.select import SELECT
 from fpcad.pipeline.solve import SOLVE
 from fpcad.pipeline.stage import Build, Stage
 from fpcad.spec.dump import dump_spec
-from fpcad.store import write_whole
+from fpcad.store import exclusive, write_whole
 
 STAGES: tuple[Stage, ...] = (SOLVE, SAMPLE, EVALUATE, SELECT, EXPORT, REPORT)
 
@@ -24,8 +24,14 @@ def run_stages(build: Build, last: str, force: bool = False) -> dict[str, Any]:
     """Make everything up to the stage `last` and return the manifest.
 
     A stage whose inputs' hash is unchanged and whose outputs exist is skipped; a stage that was
-    killed goes on from its finished shards. `force` makes the last stage again.
+    killed goes on from its finished shards. `force` makes the last stage again. No other process may
+    be making the same folder.
     """
+    with exclusive(build.folder):
+        return _run_stages(build, last, force)
+
+
+def _run_stages(build: Build, last: str, force: bool) -> dict[str, Any]:
     before, known = "", read_manifest(build.folder)["stages"]
     for stage in STAGES:
         before = build.keys[stage.name] = stage.key(build.spec, before)

@@ -32,6 +32,7 @@ Item = tuple[Proposal, dict[str, Array]]
 
 CALLS, CANDIDATES = "calls.parquet", "candidates.parquet"
 BATCHES_PER_SHARD = 16
+NOT_A_NUMBER = "not a number"
 
 
 def sample(build: Build) -> Counts:
@@ -67,15 +68,25 @@ def read_candidates(build: Build) -> Iterator[Candidate]:
         yield read_candidate(row, build.bench, space)
 
 
-def _attempt_item(space: DesignSpace, bench: Workbench, item: Item) -> Attempt:
+def attempt_item(space: DesignSpace, bench: Workbench, item: Item) -> Attempt:
+    """Attempt a proposal from its parent's states; one that is not made of numbers has failed."""
     proposal, states = item
-    return attempt(bench, space.internal(proposal.named), states)
+    tried = attempt(bench, space.internal(proposal.named), states)
+    for pose, solved in tried.poses.items():
+        if not np.isfinite([solved.cost, *solved.y]).all():
+            return Attempt(tried.design, {}, f"{pose}: {NOT_A_NUMBER}")
+    return tried
+
+
+def failed_attempt(space: DesignSpace, item: Item, reason: str) -> Attempt:
+    """What stands for an attempt that was lost to an error: a rejection."""
+    return Attempt(space.internal(item[0].named), {}, reason)
 
 
 def _solve_batch(
     workers: Workers[Workbench], space: DesignSpace, items: Sequence[Item]
 ) -> Sequence[Attempt]:
-    return list(workers.map(partial(_attempt_item, space), items))
+    return list(workers.map(partial(attempt_item, space), items, partial(failed_attempt, space)))
 
 
 def _restore(build: Build, space: DesignSpace) -> tuple[Tree, list[Call]]:

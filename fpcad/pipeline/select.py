@@ -2,36 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
-import numpy as np
 import pyarrow as pa
 
 from fpcad.pipeline.evaluate import FILE as METRICS_FILE
 from fpcad.pipeline.evaluate import evaluate_candidate
+from fpcad.pipeline.paths import FILE as PATHS
+from fpcad.pipeline.paths import read_paths, write_paths
 from fpcad.pipeline.sample import read_candidates
 from fpcad.pipeline.stage import Build, Counts, Stage
-from fpcad.pipeline.tables import PATH_SCHEMA, path_table
-from fpcad.sample.space import DesignSpace, design_space
-from fpcad.sample.tree import Candidate
+from fpcad.sample.space import design_space
 from fpcad.select.choose import Choice, choose
 from fpcad.select.ranking import rank_table
 from fpcad.store import read_table, write_json, write_table
 from fpcad.wield.demand import torque_demand
 from fpcad.wield.evaluate import Evaluation
 
-METRICS, PATHS, SELECTED = "metrics.parquet", "paths.parquet", "selected.json"
+METRICS, SELECTED = "metrics.parquet", "selected.json"
 
 
 def select(build: Build) -> Counts:
     """Rank all candidates, choose one, and keep the paths that the spec asks for.
 
-    Every hand counts as makeable until making it has failed; see :func:`refuse`.
+    Every hand that was evaluated counts as makeable until making it has failed; see :func:`refuse`.
     """
-    metrics = read_table(build.folder / METRICS_FILE)
-    n = metrics.num_rows
-    metrics = metrics.append_column("makeable", pa.array(np.ones(n, dtype=bool)))
-    return _settle(build, metrics.append_column("reason", pa.array([""] * n)))
+    return _settle(build, read_table(build.folder / METRICS_FILE))
 
 
 def refuse(build: Build, candidate: int, reason: str) -> None:
@@ -47,15 +45,15 @@ def refuse(build: Build, candidate: int, reason: str) -> None:
 
 
 def _settle(build: Build, metrics: pa.Table) -> Counts:
-    """Rank the hands, choose among those that can be made, and write what follows."""
-    space, rule = design_space(build.spec.hand), build.spec.selection.rule
+    """Rank the hands, choose among those that can be made, and write what follows.
+
+    The choice is written last: a kill before it has the same hand refused again, for the same reason.
+    """
     ranked = rank_table(metrics, list(build.spec.poses), build.spec.selection)
-    choice = choose(ranked, rule)
-    candidate = next(c for c in read_candidates(build) if c.id == choice.id)
-    evaluation = evaluate_candidate(space, build.bench, candidate)
-    _keep_paths(build, _kept(build, ranked), choice.id, evaluation)
-    write_json(build.folder / SELECTED, _selected(build, space, candidate, evaluation, choice))
+    choice = choose(ranked, build.spec.selection.rule)
     write_table(build.folder / METRICS, ranked)
+    write_paths(build, list({choice.id, *_kept(build, ranked)}), partial(_evaluate_again, build))
+    write_json(build.folder / SELECTED, _selected(build, choice))
     return {"selected": choice.id, "front": int(sum(ranked["pareto"].to_pylist()))}
 
 
@@ -70,28 +68,25 @@ def _kept(build: Build, ranked: pa.Table) -> list[int]:
             return []
 
 
-def _keep_paths(build: Build, kept: list[int], chosen: int, evaluation: Evaluation) -> None:
-    """Write the paths of the kept candidates and, with a rule off the front, of the chosen one."""
-    tables = [PATH_SCHEMA.empty_table()]
-    for shard in build.shards("evaluate").attachments("paths"):
-        tables.append(shard.filter(np.isin(shard["id"].to_numpy(), kept)))
-    if chosen not in kept:
-        tables += [path_table(chosen, path) for path in evaluation.paths.values()]
-    write_table(build.folder / PATHS, pa.concat_tables(tables))
+def _evaluate_again(build: Build, ids: list[int]) -> Iterator[Evaluation]:
+    wanted, space = set(ids), design_space(build.spec.hand)
+    candidates = [c for c in read_candidates(build) if c.id in wanted]
+    if candidates:
+        with build.open_workers() as workers:
+            yield from workers.map(partial(evaluate_candidate, space), candidates)
 
 
-def _selected(
-    build: Build, space: DesignSpace, candidate: Candidate, evaluation: Evaluation, choice: Choice
-) -> dict[str, Any]:
+def _selected(build: Build, choice: Choice) -> dict[str, Any]:
     """What selected.json tells."""
-    design = space.internal(candidate.named)
+    space = design_space(build.spec.hand)
+    named = next(c.named for c in read_candidates(build) if c.id == choice.id)
     demand = {
-        pose: torque_demand(build.bench, pose, design, path)
-        for pose, path in evaluation.paths.items()
+        pose: torque_demand(build.bench, pose, space.internal(named), path)
+        for pose, path in read_paths(build, choice.id).items()
     }
     return {
         "id": choice.id,
-        "design": dict(zip(space.names, candidate.named.tolist(), strict=True)),
+        "design": dict(zip(space.names, named.tolist(), strict=True)),
         "rule": choice.rule,
         "reason": choice.reason,
         "scores": choice.scores,

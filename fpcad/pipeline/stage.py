@@ -108,6 +108,7 @@ class Stage:
         layers: folders of the package whose code its results depend on.
         outputs: files in the build folder without which it is not up to date.
         run: makes the outputs and tells counts.
+        edition: of the columns of its files; another one makes it again.
     """
 
     name: str
@@ -115,11 +116,12 @@ class Stage:
     layers: tuple[str, ...]
     outputs: tuple[str, ...]
     run: Callable[[Build], Counts]
+    edition: int = 1
 
     def key(self, spec: Spec, before: str) -> str:
         """Hash of everything that the stage's results depend on: stages before, spec and code."""
         digest = hashlib.sha256()
-        for text in (self.name, before, spec_hash(spec, *self.sections)):
+        for text in (self.name, str(self.edition), before, spec_hash(spec, *self.sections)):
             digest.update(text.encode() + b"\0")
         for layer in self.layers:
             folder = PACKAGE / layer
