@@ -167,6 +167,38 @@ def report(name: Design, build: BuildFolder = Path("build")) -> None:
     typer.echo(write_report(run_folder(name, build)))
 
 
+@app.command()
+def plot(
+    name: Design,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for the figures.")],
+    build: BuildFolder = Path("build"),
+) -> None:
+    """Write a run's figures as SVG and PDF, for a paper."""
+    from fpcad.look.figures import write_figures
+    from fpcad.look.run import load
+
+    for file in write_figures(load(run_folder(name, build)), out):
+        typer.echo(file)
+
+
+@app.command()
+def table(
+    name: Design,
+    build: BuildFolder = Path("build"),
+    latex: Annotated[bool, typer.Option("--latex", help="LaTeX instead of CSV.")] = False,
+    front: Annotated[bool, typer.Option("--front", help="Only the Pareto front.")] = False,
+    columns: Annotated[
+        str, typer.Option(metavar="A,B,...", help="Columns to print; all by default.")
+    ] = "",
+) -> None:
+    """Print a run's hands as CSV or LaTeX, the best mean score first."""
+    from fpcad.look.run import load
+    from fpcad.look.tables import csv_text, hands, latex_text
+
+    rows = hands(load(run_folder(name, build)), [c for c in columns.split(",") if c], front)
+    typer.echo(latex_text(rows) if latex else csv_text(rows), nl=False)
+
+
 @app.command("run-trajectory")
 def run_trajectory(
     name: Design,

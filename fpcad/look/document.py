@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from fpcad.look.columns import Column
 from fpcad.look.curves import efficiency, range_shares
-from fpcad.look.groups import clusters, flat_map, representatives
+from fpcad.look.groups import clusters, design_map, representatives
 from fpcad.look.hands import hand_dimensions
 from fpcad.look.holding import HoldingForces
 from fpcad.look.kept import exact_paths, thin_paths
+from fpcad.look.layout import layout_of
 from fpcad.look.meshes import chosen_meshes
 from fpcad.look.pack import Packer
-from fpcad.look.poses import layout_of, pose_states
+from fpcad.look.poses import pose_states
 from fpcad.look.run import Run
 from fpcad.select.columns import flags, numbers
 from fpcad.select.scores import MEAN_SCORE
@@ -84,6 +85,7 @@ def _candidates(run: Run, pack: Packer, merit: Array, labels: NDArray[np.int64])
         "front": pack.integers(run.front),
         "call": pack.integers(_calls(run)),
         "makeable": pack.integers(flags(run.table, "makeable")),
+        "reason": _coded(run, pack, ["reason"]),
         "cluster": pack.integers(labels),
         "mean": pack.exact(merit),
     }
@@ -100,13 +102,19 @@ def _calls(run: Run) -> NDArray[np.int64]:
 
 def _ends(run: Run, pack: Packer, pose: str) -> Told | None:
     """Why the paths end: words, and each candidate's word on both sides."""
-    sides = {side: f"{pose}_end_{side}" for side in ("minus", "plus")}
-    if not set(sides.values()) <= set(run.table.column_names):
+    sides = [f"{pose}_end_{side}" for side in ("minus", "plus")]
+    if not set(sides) <= set(run.table.column_names):
         return None
-    columns = {side: run.table[name].to_pylist() for side, name in sides.items()}
-    words = sorted({word or "" for column in columns.values() for word in column})
-    coded = {side: [words.index(word or "") for word in col] for side, col in columns.items()}
-    return {"words": words, **{side: pack.integers(codes) for side, codes in coded.items()}}
+    return _coded(run, pack, sides)
+
+
+def _coded(run: Run, pack: Packer, names: list[str]) -> Told:
+    """Columns of words: all words that occur, and for each column each candidate's number."""
+    columns = [run.table[name].to_pylist() for name in names if name in run.table.column_names]
+    words = sorted({word or "" for column in columns for word in column})
+    codes = {word: code for code, word in enumerate(words)}
+    coded = [pack.integers([codes[word or ""] for word in column]) for column in columns]
+    return {"words": words, "codes": coded}
 
 
 def _column(run: Run, pack: Packer, column: Column) -> Told:
@@ -120,9 +128,7 @@ def _parameter(run: Run, pack: Packer, column: Column) -> Told:
 
 
 def _map(run: Run, pack: Packer) -> Told:
-    free = run.space.free
-    names = tuple(name for name, is_free in zip(run.space.names, free, strict=True) if is_free)
-    drawn = flat_map(run.space.standardize(run.designs), names, run.designs[:, free])
+    drawn = design_map(run)
     return {"points": pack.exact(drawn.points), "axes": list(drawn.axes), "told": drawn.told}
 
 

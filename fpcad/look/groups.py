@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from fpcad.look.run import Run
+
 Array = NDArray[np.float64]
 Labels = NDArray[np.int64]
 
@@ -55,6 +57,13 @@ def flat_map(standardized: Array, free_names: tuple[str, ...], named: Array) -> 
         )
     told = f"t-SNE of {free} standardized parameters, perplexity {perplexity:g}, seed {MAP_SEED}"
     return DesignMap(_t_sne(standardized, perplexity), ("t-SNE 1", "t-SNE 2"), told)
+
+
+def design_map(run: Run) -> DesignMap:
+    """The plane that landscapes are drawn over."""
+    free = run.space.free
+    names = tuple(name for name, is_free in zip(run.space.names, free, strict=True) if is_free)
+    return flat_map(run.space.standardize(run.designs), names, run.designs[:, free])
 
 
 def clusters(standardized: Array) -> Labels:

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.look.holding import HoldingForces
+from fpcad.look.layout import layout_of
 from fpcad.look.pack import Packer
 from fpcad.look.paths import PathStates, stored_paths
-from fpcad.look.poses import layout_of, pose_states
+from fpcad.look.poses import pose_states
 from fpcad.look.run import Run
 
 Array = NDArray[np.float64]

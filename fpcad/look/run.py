@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from fpcad.errors import SpecError, StoreError, ToolchainError
 from fpcad.look.columns import Column, metric_columns, parameter_columns, score_columns
+from fpcad.look.layout import columns_of
 from fpcad.look.unfinished import found_calls, found_candidates, found_metrics
 from fpcad.sample.space import DesignSpace, design_space
 from fpcad.select.columns import flags, numbers
@@ -161,7 +162,7 @@ def _check_columns(
     folder: Path, manifest: dict[str, Any], spec: Spec, candidates: pa.Table
 ) -> None:
     wanted = ["id", "parent", *design_space(spec.hand).names]
-    wanted += [f"{pose}.hand_x_mm" for pose in spec.poses]
+    wanted += [column for pose in spec.poses for column in columns_of(spec, pose)]
     missing = [name for name in wanted if name not in candidates.column_names]
     if missing:
         raise StoreError(

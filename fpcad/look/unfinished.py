@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from fpcad.look.layout import columns_of
 from fpcad.sample.space import design_space
 from fpcad.select.ranking import rank_table
 from fpcad.spec.schema import Spec
@@ -74,7 +75,8 @@ def _sampled_so_far(folder: Path, manifest: dict[str, Any], spec: Spec) -> pa.Ta
         tables.append(accepted.append_column("id", ids).select(tables[0].column_names))
     if tables:
         return pa.concat_tables(tables, promote_options="default")
-    floats = [*design_space(spec.hand).names, *(f"{pose}.hand_x_mm" for pose in spec.poses)]
+    states = [column for pose in spec.poses for column in columns_of(spec, pose)]
+    floats = [*design_space(spec.hand).names, *states]
     columns = [("id", pa.int64()), ("parent", pa.int64()), *((n, pa.float64()) for n in floats)]
     return pa.schema(columns).empty_table()
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from fpcad.look.poses import layout_of
+from fpcad.look.layout import layout_of
 from fpcad.model.state import pose_state, state_columns
 from fpcad.sample.space import design_space
 from fpcad.select.choose import choose

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -164,7 +165,7 @@ def test_the_page_fits_and_its_picture_is_kept(browser: Browser, real_page: Path
 def test_words_of_a_spec_are_shown_and_not_run(page: Page, made_up: Run, tmp_path: Path):
     evil = "</script><script>document.title='owned'</script><img src=x onerror=alert(1)>"
     spec = made_up.spec.model_copy(update={"description": evil})
-    run = Run(**{**made_up.__dict__, "spec": spec})
+    run = replace(made_up, spec=spec)
     file = tmp_path / "report.html"
     file.write_text(report_page(run), encoding="utf-8")
     show(page, file)

@@ -12,10 +12,11 @@ export class Numbers {
   show() {
     const { run, selected: row } = this.state;
     if (row === null) return this.host.replaceChildren("There is no candidate yet.");
-    const { id, front, cluster, measured, mean } = run.candidates;
+    const { id, front, cluster, measured, makeable, mean } = run.candidates;
+    const rank = front[row] ? "on the Pareto front" : makeable[row] ? "dominated" : `cannot be made: ${this.#reason(row)}`;
     const said = [
       row === run.chosen ? "chosen" : null,
-      front[row] ? "on the Pareto front" : measured[row] ? "dominated" : "not measured yet",
+      measured[row] ? rank : "not measured yet",
       cluster[row] >= 0 ? `cluster ${cluster[row] + 1}` : null,
       measured[row] ? `mean score ${format(mean[row])}` : null,
     ];
@@ -24,6 +25,11 @@ export class Numbers {
       make("p", {}, said.filter(Boolean).join(", ")),
       this.#design(run, row), ...run.poses.map((pose) => this.#pose(run, pose, row)),
     );
+  }
+
+  #reason(row) {
+    const { words, codes } = this.state.run.candidates.reason;
+    return codes.length ? words[codes[0][row]] : "";
   }
 
   #design(run, row) {
@@ -36,7 +42,7 @@ export class Numbers {
     const metrics = run.metrics.filter(ofPose).map((c) => [bare(c), `${format(c.data[row], digits(c))} ${c.unit}`]);
     const scores = run.scores.filter(ofPose).map((c) => [`score of ${bare(c)}`, format(c.data[row])]);
     const ends = run.ends[pose.name];
-    const stops = ends ? [["path ends by", `− ${ends.words[ends.minus[row]]}, + ${ends.words[ends.plus[row]]}`]] : [];
+    const stops = ends ? [["path ends by", `− ${ends.words[ends.codes[0][row]]}, + ${ends.words[ends.codes[1][row]]}`]] : [];
     return table(pose.name, [...metrics, ...stops, ...scores]);
   }
 }
