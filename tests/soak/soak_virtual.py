@@ -1,0 +1,238 @@
+"""Long tests of the link against the firmware's core, in virtual time: `make soak`."""
+
+from __future__ import annotations
+
+import gc
+import random
+import resource
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from fpcad.run.driver import Watch
+from fpcad.run.errors import ControllerHeld, ControllerSilent, LinkLost, RunError
+from fpcad.run.firmware import FirmwareDriver
+from fpcad.run.knots import from_wire, to_wire
+from fpcad.run.messages import State
+from fpcad.run.quintic import evaluate
+from fpcad.run.trajectory import repeated
+from tests.firmware.core import core_controller
+from tests.run.fixtures import hand_limits, swing
+from tests.run.test_stream import KNOTS
+from tests.run.virtual import Damage, VirtualLine, bit_flips, lost_bytes, lost_frames
+
+FRAMES = 1_000_000
+TICK_US = 4_000
+WANTED = np.rint(
+    evaluate(
+        from_wire(to_wire(KNOTS).messages), np.arange(0, 4_000_001, TICK_US) / 1e6
+    ).position * 1e6
+).astype(int)  # fmt: skip
+
+
+class FaithfulTick:
+    """Every command at full pace is the one that the knots say, to a count."""
+
+    def __init__(self) -> None:
+        self.ticks = 0
+
+    def __call__(self, line: VirtualLine) -> None:
+        view = line.device.look()
+        if view.state == State.RUNNING and view.rate == 1:
+            self.ticks += 1
+            assert view.path_us % TICK_US == 0
+            error = np.abs(np.array(view.command) - WANTED[view.path_us // TICK_US]).max()
+            assert error <= 1, f"{error} counts off at {view.path_us} us"
+
+
+def mangled(rate: float, seed: int) -> Damage:
+    """Inserts, drops, doubles and swaps bytes."""
+    chance = random.Random(seed)
+
+    def damage(data: bytes) -> bytes:
+        out = bytearray()
+        for byte in data:
+            fate = chance.random() / rate
+            if fate < 1:
+                out += (b"", bytes([byte, byte]), bytes([byte, chance.randrange(256)]))[
+                    chance.randrange(3)
+                ]
+                if chance.random() < 0.3:
+                    out[-2:] = out[-2:][::-1]
+            else:
+                out.append(byte)
+        return bytes(out)
+
+    return damage
+
+
+@dataclass
+class Tally:
+    frames: int = 0
+    runs: int = 0
+    complete: int = 0
+    resends: int = 0
+
+
+def damaged_run(damage, rate: float, seed: int, tally: Tally) -> str:
+    """One run of four seconds; how it ended."""
+    line = VirtualLine(
+        core_controller(),
+        to_device=damage(rate, seed),
+        to_host=damage(rate, seed + 10**6),
+        baud_rate=115_200,
+        on_tick=(faithful := FaithfulTick()),
+    )
+    tally.runs += 1
+    end = "complete"
+    heard = 0
+    try:
+        driver = FirmwareDriver(line, hand_limits(), line.clock)
+        driver.ready(clear=False)
+        played = driver.play(KNOTS, Watch(lambda _sample: None, lambda: 0))
+        assert played.final_state == "READY" and faithful.ticks == 999
+        tally.complete += 1
+        tally.resends += played.resends
+    except (LinkLost, ControllerHeld, ControllerSilent) as error:
+        end = type(error).__name__
+        line.let_pass(1.5)
+        assert line.device.follower.rate == 0
+    heard = int(line.device.time_us / 20_000 * 1.2)  # telemetry and health
+    tally.frames += len(line.log) + heard
+    return end
+
+
+@pytest.mark.parametrize("damage", [bit_flips, lost_bytes, mangled], ids=lambda d: d.__name__)
+def test_a_million_damaged_frames(damage):
+    rates = (1e-5, 1e-4, 1e-3, 3e-3, 1e-2)
+    for rate in rates:
+        tally, ends, seed = Tally(), Counter(), 0
+        while tally.frames < FRAMES / 3 / len(rates):
+            ends[damaged_run(damage, rate, seed, tally)] += 1
+            seed += 1
+        print(f"\n{damage.__name__} {rate:g} a byte, seeds 0..{seed - 1}: {tally}, {dict(ends)}")
+        assert rate > 1e-3 or ends["complete"] == tally.runs
+
+
+@pytest.mark.parametrize("rate", [0.01, 0.03])
+def test_lost_doubled_and_late_frames(rate):
+    tally, ends = Tally(), Counter()
+    for seed in range(100):
+        ends[damaged_run(lost_frames, rate, seed, tally)] += 1
+    print(f"\nframes lost, doubled, late {rate:g} each: {tally}, {dict(ends)}")
+    assert ends["complete"] == tally.runs
+
+
+class CutLine(VirtualLine):
+    """Breaks after so many bytes in one direction, with an error of the port or in silence."""
+
+    limit: int = 0
+    direction: str = "out"
+    loud: bool = True
+    passed: int = 0
+
+    def _spend(self, data: bytes, direction: str) -> bytes:
+        if direction != self.direction:
+            return data if self.connected else b""
+        left = max(self.limit - self.passed, 0)
+        self.passed += len(data)
+        if self.passed > self.limit:
+            self.connected = False
+        return data[:left]
+
+    def write(self, data: bytes) -> None:
+        if not self.connected and self.loud:
+            raise LinkLost("the line broke")
+        kept = self._spend(data, "out")
+        self.log.append(data)
+        self._to_device += kept
+        self._deliver(None)
+
+    def read(self) -> bytes:
+        if not self.connected and self.loud:
+            raise LinkLost("the line broke")
+        return self._spend(super().read(), "in")
+
+
+@pytest.mark.parametrize("loud", [True, False], ids=["port error", "silence"])
+@pytest.mark.parametrize("direction", ["out", "in"])
+def test_a_cut_after_any_byte_of_a_session(direction, loud):
+    motion = swing(1.0, 26, amplitude=0.04)
+    cut, ends, worst_host, worst_stop = 0, Counter(), 0.0, 0.0
+    while True:
+        line = CutLine(core_controller())
+        line.limit, line.direction, line.loud = cut, direction, loud
+        broke_at, stopped_at = [], []
+
+        def note(line, broke_at=broke_at, stopped_at=stopped_at):
+            if not line.connected and not broke_at:
+                broke_at.append(line.now_s)
+            stands = line.device.state is not State.RUNNING and line.device.follower.rate == 0
+            if broke_at and not stopped_at and stands:
+                stopped_at.append(line.now_s)
+
+        line.on_tick = note
+        try:
+            driver = FirmwareDriver(line, hand_limits(), line.clock, patience_s=0.5)
+            driver.ready(clear=False)
+            driver.play(motion, Watch(lambda _sample: None, lambda: 0))
+            break  # the cut lies behind the session's end
+        except RunError as error:
+            ends[type(error).__name__] += 1
+        ended = line.now_s
+        line.let_pass(1.0)
+        assert stopped_at and line.device.follower.rate == 0
+        worst_host = max(worst_host, ended - (broke_at or [ended])[0])
+        worst_stop = max(worst_stop, stopped_at[0] - broke_at[0])
+        again = VirtualLine(line.device)
+        assert FirmwareDriver(again, hand_limits(), again.clock).ready(clear=True).state == "READY"
+        cut += 11
+    print(
+        f"\ncut {direction}, {'port error' if loud else 'silence'}, every 11th of {cut} bytes: "
+        f"{dict(ends)}; host ends within {worst_host:.3f} s, joints stand within {worst_stop:.3f} s"
+    )
+    assert worst_host <= 1.0 and worst_stop <= 0.7
+
+
+class SkewedLine(VirtualLine):
+    """The host's clock runs faster or slower than the controller's."""
+
+    skew: float = 0.0
+
+    def clock(self) -> float:
+        return self.now_s * (1 + self.skew)
+
+
+@pytest.mark.parametrize("skew_ppm", [-200, 0, 200])
+def test_clocks_that_differ_over_ten_minutes(skew_ppm):
+    motion = repeated(swing(4.0, 101), 150)  # 25 knots a second
+    line = SkewedLine(core_controller(), baud_rate=115_200)
+    line.skew = skew_ppm * 1e-6
+    errors, memory = [], []
+    driver = FirmwareDriver(line, hand_limits(), line.clock)
+    driver.ready(clear=False)
+
+    def note(sample):
+        if sample.state == "RUNNING" and round(sample.device_s * 50) % 500 == 0:
+            clock = stream_clock()
+            errors.append((clock.device_us(line.clock()) - line.device.time_us) / 1e3)
+            line.log.clear()
+            gc.collect()
+            memory.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+
+    def stream_clock():
+        streams = [o for o in gc.get_objects() if type(o).__name__ == "DeviceClock"]
+        return streams[-1]
+
+    played = driver.play(motion, Watch(note, lambda: 0))
+    growth, half = memory[-1] - memory[2], len(errors) // 2
+    drift = abs(np.mean(errors[half:]) - np.mean(errors[:half]))
+    print(
+        f"\n{skew_ppm:+d} ppm, {motion.time_s[-1]:.0f} s, {played.knots} knots: "
+        f"clock {np.mean(errors):.3f} ms behind (the line's delay), drift {drift:.3f} ms, "
+        f"memory {growth:+d} kB, ended {played.final_state}"
+    )
+    assert played.final_state == "READY" and drift <= 1.0
+    assert growth < 4096
