@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from importlib import resources
+from multiprocessing import parent_process
 from pathlib import Path
 
 import casadi as ca
@@ -100,7 +101,7 @@ def compiler() -> str | None:
     """Path of the C compiler (CC, else cc or gcc or clang); None, with a warning, without one."""
     names = [os.environ["CC"]] if os.environ.get("CC") else ["cc", "gcc", "clang"]
     found = next((path for name in names if (path := shutil.which(name))), None)
-    if found is None:
+    if found is None and parent_process() is None:  # workers need not say it again
         logger.warning(
             "no C compiler found (tried %s): formulas are interpreted, about ten times slower",
             ", ".join(names),
