@@ -12,8 +12,10 @@ import pyarrow.compute as pc
 from fpcad.look.layout import columns_of
 from fpcad.sample.space import design_space
 from fpcad.select.ranking import rank_table
+from fpcad.select.scores import Metric
 from fpcad.spec.schema import Spec
 from fpcad.store import Shards, read_table
+from fpcad.wield.plugins import scored_by
 
 SAMPLING = "Sampling was stopped before its end: what its store holds is shown."
 MEASURING = "Measuring was stopped before its end: scores compare the hands measured so far."
@@ -87,7 +89,8 @@ def _ranked(measured: pa.Table, spec: Spec) -> pa.Table:
         n = measured.num_rows
         measured = measured.append_column("makeable", pa.array(np.ones(n, dtype=bool)))
         measured = measured.append_column("reason", pa.array([""] * n, pa.string()))
-    return rank_table(measured, list(spec.poses), spec.selection)
+    more = [Metric(*told) for told in scored_by(measured.column_names, list(spec.poses))]
+    return rank_table(measured, list(spec.poses), spec.selection, more)
 
 
 def _no_metrics(spec: Spec) -> pa.Table:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, fields
 from functools import partial
 from itertools import chain, islice
@@ -22,6 +22,7 @@ from fpcad.store import write_table
 from fpcad.wield.evaluate import Evaluation, evaluate
 from fpcad.wield.metrics import PathMetrics
 from fpcad.wield.path import WieldingPath
+from fpcad.wield.plugins import PathMetric, installed_metrics, measured
 
 Item = TypeVar("Item")
 
@@ -106,6 +107,8 @@ def metrics_schema(build: Build) -> pa.Schema:
         for pose in build.spec.poses
         for field in fields(PathMetrics)
     ]
+    more = [metric.name for metric in installed_metrics()]
+    columns += [(f"{pose}_{name}", pa.float64()) for pose in build.spec.poses for name in more]
     judged = [("makeable", pa.bool_()), ("reason", pa.string())]
     return pa.schema([("id", pa.int64()), *columns, *judged])
 
@@ -119,9 +122,9 @@ def _chunks(items: Iterable[Item]) -> Iterator[Iterator[Item]]:
 
 def _store(build: Build, evaluated: Iterable[tuple[Candidate, Evaluation]], bar: Progress) -> None:
     """Write one shard of metrics, with the paths where the spec keeps more than the chosen one's."""
-    rows, attachments = [], []
+    rows, attachments, more = [], [], installed_metrics()
     for candidate, evaluation in evaluated:
-        rows.append(_metrics_row(candidate.id, evaluation))
+        rows.append(_metrics_row(candidate.id, evaluation, more))
         if build.spec.path.keep != "selected":
             attachments.append(evaluation_table(candidate.id, evaluation))
         bar.advance()
@@ -130,14 +133,18 @@ def _store(build: Build, evaluated: Iterable[tuple[Candidate, Evaluation]], bar:
     build.shards("evaluate").append(table, **kept)
 
 
-def _metrics_row(candidate: int, evaluation: Evaluation) -> dict[str, Any]:
+def _metrics_row(
+    candidate: int, evaluation: Evaluation, more: Sequence[PathMetric]
+) -> dict[str, Any]:
     """One row; a hand that was not evaluated in all poses cannot be chosen."""
     row: dict[str, Any] = {"id": candidate}
     for pose, metrics in evaluation.metrics.items():
         row |= {f"{pose}_{name}": value for name, value in asdict(metrics).items()}
+        found = measured(more, evaluation.paths.get(pose), metrics.tmr_deg > 0)
+        row |= {f"{pose}_{m.name}": value for m, value in zip(more, found, strict=True)}
     missing = [pose for pose in evaluation.metrics if pose not in evaluation.paths]
     reason = f"{missing[0]}: {evaluation.metrics[missing[0]].end_plus}" if missing else ""
     return {**row, "makeable": not missing, "reason": reason}
 
 
-EVALUATE = Stage("evaluate", ("path", "motors"), ("wield",), (FILE,), evaluate_all, edition=2)
+EVALUATE = Stage("evaluate", ("path", "motors"), ("wield",), (FILE,), evaluate_all, 2, plugins=True)

@@ -17,9 +17,11 @@ from fpcad.pipeline.stage import Build, Counts, Stage
 from fpcad.sample.space import design_space
 from fpcad.select.choose import Choice, choose
 from fpcad.select.ranking import rank_table
+from fpcad.select.scores import Metric
 from fpcad.store import read_table, write_json, write_table
 from fpcad.wield.demand import torque_demand
 from fpcad.wield.evaluate import Evaluation
+from fpcad.wield.plugins import scored_by
 
 METRICS, SELECTED = "metrics.parquet", "selected.json"
 
@@ -49,7 +51,9 @@ def _settle(build: Build, metrics: pa.Table) -> Counts:
 
     The choice is written last: a kill before it has the same hand refused again, for the same reason.
     """
-    ranked = rank_table(metrics, list(build.spec.poses), build.spec.selection)
+    poses, selection = list(build.spec.poses), build.spec.selection
+    more = [Metric(*told) for told in scored_by(metrics.column_names, poses)]
+    ranked = rank_table(metrics, poses, selection, more)
     choice = choose(ranked, build.spec.selection.rule)
     write_table(build.folder / METRICS, ranked)
     write_paths(build, list({choice.id, *_kept(build, ranked)}), partial(_evaluate_again, build))

@@ -14,6 +14,7 @@ from fpcad.solve.attempt import Workbench, open_workbench
 from fpcad.spec.dump import spec_hash
 from fpcad.spec.schema import Spec
 from fpcad.store import Shards
+from fpcad.wield.plugins import installed_metrics
 from fpcad.workers import Opener, ProcessPool, Workers, available_cores
 
 PACKAGE = Path(__file__).parent.parent
@@ -109,6 +110,7 @@ class Stage:
         outputs: files in the build folder without which it is not up to date.
         run: makes the outputs and tells counts.
         edition: of the columns of its files; another one makes it again.
+        plugins: whether its results depend on other packages' metrics.
     """
 
     name: str
@@ -117,6 +119,7 @@ class Stage:
     outputs: tuple[str, ...]
     run: Callable[[Build], Counts]
     edition: int = 1
+    plugins: bool = False
 
     def key(self, spec: Spec, before: str) -> str:
         """Hash of everything that the stage's results depend on: stages before, spec and code."""
@@ -127,4 +130,6 @@ class Stage:
             folder = PACKAGE / layer
             for source in sorted([*folder.rglob("*.py"), *folder.glob("page/report.*")]):
                 digest.update(source.read_bytes())
+        for metric in installed_metrics() if self.plugins else ():
+            digest.update(metric.fingerprint().encode())
         return digest.hexdigest()

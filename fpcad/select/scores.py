@@ -38,9 +38,12 @@ def scored_metrics(selection: Selection) -> tuple[Metric, ...]:
     )
 
 
-def score_columns(poses: Sequence[str], selection: Selection) -> list[str]:
+def score_columns(
+    poses: Sequence[str], selection: Selection, more: Sequence[Metric] = ()
+) -> list[str]:
     """Names of the score columns, without the mean, in the order of the table."""
-    return [f"{pose}_{metric.score}" for pose in poses for metric in scored_metrics(selection)]
+    metrics = (*scored_metrics(selection), *more)
+    return [f"{pose}_{metric.score}" for pose in poses for metric in metrics]
 
 
 def score(values: Array, better: Better, resolution: float) -> Array:
@@ -69,7 +72,9 @@ def score(values: Array, better: Better, resolution: float) -> Array:
     return scores
 
 
-def score_table(metrics: pa.Table, poses: Sequence[str], selection: Selection) -> pa.Table:
+def score_table(
+    metrics: pa.Table, poses: Sequence[str], selection: Selection, more: Sequence[Metric] = ()
+) -> pa.Table:
     """The metrics table with a score for each pose and metric, and their mean.
 
     A pose without a path, whose range of motion is 0, scores 0 in all of its metrics.
@@ -79,21 +84,24 @@ def score_table(metrics: pa.Table, poses: Sequence[str], selection: Selection) -
             `<pose>_mft_p90_nmm` [N mm].
         poses: names of the poses.
         selection: torque metric and resolutions.
+        more: metrics that are scored beside fpcad's own.
 
     Returns:
-        The n rows with `<pose>_tmr_score`, `<pose>_mss_score`, `<pose>_torque_score` and
-        `mean_score` added, each from 0 to 100.
+        The n rows with `<pose>_tmr_score`, `<pose>_mss_score`, `<pose>_torque_score`, those of
+        `more` and `mean_score` added, each from 0 to 100.
     """
     for pose in poses:
         has_path = numbers(metrics, f"{pose}_tmr_deg") > 0  # False for NaN
-        for metric in scored_metrics(selection):
+        for metric in (*scored_metrics(selection), *more):
             values = np.where(has_path, numbers(metrics, f"{pose}_{metric.column}"), np.nan)
             scores = score(values, metric.better, metric.resolution)
             metrics = with_column(metrics, f"{pose}_{metric.score}", scores)
-    means = score_matrix(metrics, poses, selection).mean(axis=1)
+    means = score_matrix(metrics, poses, selection, more).mean(axis=1)
     return with_column(metrics, MEAN_SCORE, means)
 
 
-def score_matrix(table: pa.Table, poses: Sequence[str], selection: Selection) -> Array:
-    """Scores (n, 3 n_poses) of a scored table, in the order of :func:`score_columns`."""
-    return np.column_stack([numbers(table, name) for name in score_columns(poses, selection)])
+def score_matrix(
+    table: pa.Table, poses: Sequence[str], selection: Selection, more: Sequence[Metric] = ()
+) -> Array:
+    """Scores (n, k n_poses) of a scored table, in the order of :func:`score_columns`."""
+    return np.column_stack([numbers(table, name) for name in score_columns(poses, selection, more)])
