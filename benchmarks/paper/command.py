@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from importlib.util import find_spec
 from pathlib import Path
 
 from benchmarks.paper.control import examine_groups
@@ -39,6 +40,7 @@ def main() -> None:
     """Run or reuse the builds, examine them and write the document."""
     told = _arguments()
     builds, reporter = told.build.resolve(), ConsoleReporter()
+    picture = _picture(reporter)
     folders = [
         run_experiment(experiment.spec(told.candidates), builds, told.workers)
         for experiment in (PLANE_EXPERIMENT, CALLS_EXPERIMENT, FULL_EXPERIMENT)
@@ -56,8 +58,8 @@ def main() -> None:
         trial=told.candidates,
     )
     folder = ROOT / "docs" if told.candidates is None else full
-    picture = "images/results-curves.png"
-    draw_curves(results, folder / picture)
+    if picture is not None:
+        draw_curves(results, folder / picture)
     print(write_whole(folder / "results.md", write_document(results, picture)))
 
 
@@ -74,6 +76,14 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--recheck", type=int, default=HANDS, help="hands checked again")
     parser.add_argument("--ipopt", type=int, default=IPOPT_HANDS, help="hands given to IPOPT")
     return parser.parse_args()
+
+
+def _picture(reporter: Reporter) -> str | None:
+    """File of the curves beside the document; None, which is told at once, without matplotlib."""
+    if find_spec("matplotlib") is None:
+        reporter.note("no picture of the curves: matplotlib is missing; fpcad[pictures] brings it")
+        return None
+    return "images/results-curves.png"
 
 
 def _fillings(reporter: Reporter) -> list[Filling]:
