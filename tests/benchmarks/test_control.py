@@ -1,6 +1,9 @@
+import shutil
+
 import numpy as np
 import pytest
 
+from benchmarks.paper import control
 from benchmarks.paper.control import directions_held, examine
 from benchmarks.paper.control_states import (
     Disturbed,
@@ -10,12 +13,14 @@ from benchmarks.paper.control_states import (
     without_tip_force,
 )
 from benchmarks.paper.recheck_ipopt import ipopt_costs, open_references
+from fpcad.pipeline.stage import Build
 from fpcad.sample.tree import Candidate
 from fpcad.solve.attempt import held
 from fpcad.solve.measure import measure
 from fpcad.solve.program import pose_bounds
 from fpcad.wield.evaluate import evaluate
 from fpcad.wield.rates import End
+from fpcad.workers import InProcess
 
 
 @pytest.fixture(scope="module")
@@ -76,3 +81,28 @@ def test_ipopt_finds_no_other_pose_for_the_first_hand(
             ours = first_hand.attempt.poses[pose].cost
             assert ours <= cost + max(0.01 * abs(cost), 2e-3)
     assert sum(cost is not None for cost in costs.values()) >= 2
+
+
+def refuse(*_):
+    raise AssertionError("examined again")
+
+
+class BuildInProcess(Build):
+    def open_workers(self):
+        return InProcess(lambda: self.bench)
+
+
+def test_finished_chunks_are_not_examined_again(
+    built_clay, kernel_cache, clay, tmp_path, monkeypatch
+):
+    folder = tmp_path / "clay"
+    folder.mkdir()
+    for name in ("candidates.parquet", "calls.parquet", "manifest.json"):
+        shutil.copy(built_clay / name, folder)
+    (tmp_path / ".kernels").symlink_to(kernel_cache, target_is_directory=True)
+    build = BuildInProcess(clay, folder)
+    first = control.examine_groups(build, 1)
+    monkeypatch.setattr(control, "examine", refuse)
+    assert control.examine_groups(build, 1) == first
+    assert {row["pose"] for row in first["candidates"]} == set(clay.poses)
+    assert all(row["held"] == 2 for row in first["candidates"])
