@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 from rich.markup import escape
@@ -15,6 +16,9 @@ from fpcad.console import ConsoleReporter, console, start_logging
 from fpcad.errors import FpcadError, SpecError
 from fpcad.spec import Spec, find_faults, json_schema, load_spec, write_new
 from fpcad.summary import print_design, print_run
+
+if TYPE_CHECKING:
+    from fpcad.pipeline.hire import Hire
 
 app = typer.Typer(
     name="fpcad",
@@ -43,6 +47,13 @@ BuildFolder = Annotated[
 WorkerCount = Annotated[
     int,
     typer.Option("--workers", "-j", min=0, help="Processes side by side; 0: one for each core."),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(metavar="ADDRESS", help="Run on a dask scheduler's workers: tcp://host:8786."),
+]
+Slurm = Annotated[
+    bool, typer.Option("--slurm", help="Run on SLURM jobs of one core, as many as --workers says.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Make the last stage again.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout.")]
@@ -92,11 +103,13 @@ def design(
     name: Design,
     build: BuildFolder = Path("build"),
     workers: WorkerCount = 0,
+    scheduler: Scheduler = None,
+    slurm: Slurm = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Make the whole hand: solve, sample, evaluate, select, export, report."""
-    _run("report", name, build, workers, force, as_json)
+    _run("report", name, build, workers, force, as_json, scheduler, slurm)
 
 
 @app.command()
@@ -116,11 +129,13 @@ def sample(
     name: Design,
     build: BuildFolder = Path("build"),
     workers: WorkerCount = 0,
+    scheduler: Scheduler = None,
+    slurm: Slurm = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Sample hands that reach all poses: candidates.parquet, calls.parquet."""
-    _run("sample", name, build, workers, force, as_json)
+    _run("sample", name, build, workers, force, as_json, scheduler, slurm)
 
 
 @app.command()
@@ -128,11 +143,13 @@ def evaluate(
     name: Design,
     build: BuildFolder = Path("build"),
     workers: WorkerCount = 0,
+    scheduler: Scheduler = None,
+    slurm: Slurm = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Trace each candidate's wielding paths and measure them."""
-    _run("evaluate", name, build, workers, force, as_json)
+    _run("evaluate", name, build, workers, force, as_json, scheduler, slurm)
 
 
 @app.command()
@@ -165,6 +182,22 @@ def report(name: Design, build: BuildFolder = Path("build")) -> None:
     from fpcad.look.report import write_report
 
     typer.echo(write_report(run_folder(name, build)))
+
+
+@app.command()
+def explore(
+    name: Design,
+    build: BuildFolder = Path("build"),
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 takes any free one.")] = 8765,
+    host: Annotated[
+        str, typer.Option(help="Address to listen at; this machine alone by default.")
+    ] = "127.0.0.1",
+    workers: WorkerCount = 0,
+) -> None:
+    """Look at all hands of a run with their paths in a browser, compare them, choose another one."""
+    from fpcad.explore import explore_run
+
+    explore_run(run_folder(name, build), host, port, workers)
 
 
 @app.command()
@@ -263,15 +296,36 @@ def main() -> None:
 Verb = Literal["solve", "sample", "evaluate", "select", "export", "report"]
 
 
-def _run(last: Verb, name: str, folder: Path, workers: int, force: bool, as_json: bool) -> None:
+def _run(
+    last: Verb,
+    name: str,
+    folder: Path,
+    workers: int,
+    force: bool,
+    as_json: bool,
+    scheduler: str | None = None,
+    slurm: bool = False,
+) -> None:
     from fpcad.pipeline import Build, run_stages
     from fpcad.workers import available_cores
 
     spec: Spec = load_spec(spec_file(name))
     count = workers or available_cores()
-    build = Build(spec, folder / spec.name, count, ConsoleReporter())
-    manifest: dict[str, Any] = run_stages(build, last, force)
+    with _hiring(scheduler, slurm, count) as hire:
+        build = Build(spec, folder / spec.name, count, ConsoleReporter(), hire=hire)
+        manifest: dict[str, Any] = run_stages(build, last, force)
     if as_json:
         typer.echo(json.dumps(manifest, indent=2))
     else:
         print_design(build.folder, manifest, last)
+
+
+def _hiring(scheduler: str | None, slurm: bool, count: int) -> AbstractContextManager[Hire]:
+    """Where the workers come from; they are let go with the block."""
+    from fpcad.pipeline.hire import on_scheduler, on_slurm, processes
+
+    if scheduler and slurm:
+        raise typer.BadParameter("--scheduler and --slurm exclude each other")
+    if slurm:
+        return on_slurm(count)
+    return on_scheduler(scheduler) if scheduler else nullcontext(processes)

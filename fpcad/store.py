@@ -44,6 +44,15 @@ def exclusive(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
+def waiting_for(folder: Path) -> Iterator[None]:
+    """One process at a time in a folder; the others wait."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / LOCK).open("a") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+@contextmanager
 def replacing(target: Path) -> Iterator[Path]:
     """A file beside `target` to write to; it takes the target's place when the block succeeds."""
     target.parent.mkdir(parents=True, exist_ok=True)

@@ -10,17 +10,15 @@ from functools import partial
 from pathlib import Path
 from typing import Protocol
 
+from fpcad.pipeline.hire import Hire, processes
 from fpcad.solve.attempt import Workbench, open_workbench
 from fpcad.spec.dump import spec_hash
 from fpcad.spec.schema import Spec
 from fpcad.store import Shards
 from fpcad.wield.plugins import installed_metrics
-from fpcad.workers import Opener, ProcessPool, Workers, available_cores
+from fpcad.workers import Workers, available_cores
 
 PACKAGE = Path(__file__).parent.parent
-
-Hire = Callable[[Opener[Workbench], int], Workers[Workbench]]
-"""Takes on a number of workers that each open a workbench."""
 
 Counts = dict[str, int | float | str]
 """What a stage tells of itself in the manifest."""
@@ -71,8 +69,8 @@ class Build:
     reporter: Reporter = field(default_factory=SilentReporter)
     keys: dict[str, str] = field(default_factory=dict)
     """Hash of each stage's inputs."""
-    hire: Hire = ProcessPool
-    """Where the workers come from; results do not depend on it."""
+    hire: Hire = processes
+    """Where the workers come from."""
     _bench: Workbench | None = None
 
     @property
@@ -92,7 +90,7 @@ class Build:
     def open_workers(self) -> Workers[Workbench]:
         """Workers that each hold the formulas, which are compiled here before."""
         _ = self.bench
-        return self.hire(partial(open_workbench, self.spec, self.kernel_cache), self.workers)
+        return self.hire(self.spec, self.kernel_cache, self.workers)
 
     def shards(self, stage: str) -> Shards:
         """Running results of a stage; their folder is named after its inputs' hash."""

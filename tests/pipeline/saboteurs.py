@@ -6,13 +6,16 @@ import os
 import signal
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fpcad.sample.rrt import Proposal
 from fpcad.sample.tree import Candidate
-from fpcad.solve.attempt import Workbench
+from fpcad.solve.attempt import Workbench, open_workbench
+from fpcad.spec.schema import Spec
 from fpcad.workers import Failed, ProcessPool, raise_failure
 
 MISHAPS = {3: "raise", 5: "exit", 7: "crash", 13: "nan"}
@@ -26,6 +29,11 @@ class Saboteurs(ProcessPool[Workbench]):
         self, task: Callable, items: Iterable, failed: Failed[Any, Any] = raise_failure
     ) -> Iterator[Any]:
         return super().map(Sabotaged(task), items, failed)
+
+
+def hire_saboteurs(spec: Spec, cache: Path, count: int) -> Saboteurs:
+    """Saboteurs in place of a build's processes."""
+    return Saboteurs(partial(open_workbench, spec, cache), count)
 
 
 class Sabotaged:

@@ -11,7 +11,7 @@ import pytest
 from fpcad.pipeline.run import run_stages
 from fpcad.sample.rrt import ACCEPTED
 from fpcad.store import read_json, read_table
-from tests.pipeline.saboteurs import MISHAPS, Saboteurs
+from tests.pipeline.saboteurs import MISHAPS, hire_saboteurs
 from tests.pipeline.small import small_build
 
 REASONS = {
@@ -32,7 +32,7 @@ def healthy(tmp_path_factory: pytest.TempPathFactory, bench, kernel_cache) -> Pa
 @pytest.fixture(scope="module")
 def harmed(tmp_path_factory: pytest.TempPathFactory, healthy: Path, kernel_cache) -> Path:
     """The same hands, evaluated by saboteurs."""
-    build = small_build(tmp_path_factory.mktemp("harmed"), kernel_cache, 2, hire=Saboteurs)
+    build = small_build(tmp_path_factory.mktemp("harmed"), kernel_cache, 2, hire=hire_saboteurs)
     shutil.copytree(healthy, build.folder)
     for shards in build.folder.glob("store/evaluate-*"):
         shutil.rmtree(shards)
@@ -73,7 +73,7 @@ def test_a_failed_hand_is_not_chosen(harmed):
 
 
 def test_sampling_rejects_calls_that_fail(tmp_path, kernel_cache):
-    build = small_build(tmp_path, kernel_cache, 2, hire=Saboteurs)
+    build = small_build(tmp_path, kernel_cache, 2, hire=hire_saboteurs)
     manifest = run_stages(build, "sample")
     outcomes = {row["call"]: row["outcome"] for row in rows(build.folder, "calls.parquet")}
     assert {call: outcomes[call] for call in REASONS} == REASONS
