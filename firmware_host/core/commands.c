@@ -25,12 +25,12 @@ void command_hold(struct controller *controller)
     }
 }
 
-void command_estop(struct controller *controller)
+void command_estop(struct controller *controller, uint8_t cause)
 {
     controller->board->torque_off(controller->board->context);
     controller->torque_on = false;
     controller->state = STATE_ESTOP;
-    controller->cause = CAUSE_HOST;
+    controller->cause = cause;
     follower_rest_at(&controller->follower, controller->measured);
 }
 

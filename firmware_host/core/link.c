@@ -168,7 +168,7 @@ void link_take(struct controller *controller, const struct frame *frame)
     } else if (frame->version != controller->setup->protocol || !is_command(frame->kind)) {
         return;
     } else if (frame->kind == MESSAGE_ESTOP) {
-        command_estop(controller);
+        command_estop(controller, CAUSE_HOST);
         send_ack(controller, frame->session);
     } else if (frame->session != controller->session || controller->session == 0) {
         send_no_session(controller, frame->session);

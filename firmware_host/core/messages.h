@@ -52,6 +52,7 @@ enum cause {
     CAUSE_CURRENT = 5,
     CAUSE_TEMPERATURE = 6,
     CAUSE_MOTOR_LOST = 7,
+    CAUSE_SWITCH = 8,
 };
 
 enum reason {

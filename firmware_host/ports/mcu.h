@@ -14,6 +14,8 @@ bool mcu_take_byte(uint8_t *byte);
 void mcu_put(const uint8_t *bytes, uint8_t count);
 /* Whether a tick is due; late ones are made up for, MAX_LATE_TICKS at most. */
 bool mcu_take_tick(void);
+/* Whether the emergency switch is pressed, or its wire is broken. */
+bool mcu_switch_pressed(void);
 /* Sleep until an interrupt, unless there is something to do already. */
 void mcu_rest(void);
 

@@ -1,4 +1,5 @@
 /* The firmware on a microcontroller: bytes as they come, ticks as they are due. */
+#include "commands.h"
 #include "controller.h"
 #include "mcu.h"
 #include "motors.h"
@@ -28,6 +29,9 @@ int main(void)
             if (byte == 0) {
                 break;
             }
+        }
+        if (mcu_switch_pressed() && controller.state != STATE_ESTOP) {
+            command_estop(&controller, CAUSE_SWITCH);
         }
         if (mcu_take_tick()) {
             controller_tick(&controller);

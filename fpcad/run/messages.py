@@ -39,6 +39,7 @@ class Cause(IntEnum):
     CURRENT = 5
     TEMPERATURE = 6
     MOTOR_LOST = 7
+    SWITCH = 8
 
 
 class Reason(IntEnum):

@@ -36,8 +36,8 @@ from fpcad.run.messages import (
     Telemetry,
 )
 
-START_LEAD_S = 0.2
-"""How far ahead the start lies: time enough for a few repeats."""
+START_LEAD_S = 0.5
+"""How far ahead the start lies: time enough for a stall of the host, or for repeats."""
 _STOP_PERIOD_S = 0.05
 _STOP_PATIENCE_S = 3.0
 

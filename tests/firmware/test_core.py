@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 
 from firmware_host.tools import generate
 from fpcad.run.acceptance import first_violation
@@ -34,6 +34,7 @@ def recoded(kind: int, payload: bytes) -> bytes | None:
     return None if length == 255 else out.raw[:length]
 
 
+@settings(deadline=None)
 @given(any_message())
 def test_messages_pass_through_c_unchanged(message):
     payload = encode(message)
@@ -55,6 +56,7 @@ def fits(code: int, payload: bytes) -> bool:
     return rest >= 0 and rest % per_joint == 0 and rest // per_joint <= 12
 
 
+@settings(deadline=None)
 @given(FRAMES)
 def test_frames_of_c_and_of_python_are_the_same_bytes(frame):
     wire = ctypes.create_string_buffer(255)

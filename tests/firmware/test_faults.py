@@ -20,16 +20,17 @@ class Blackbox:
     """Lets one thing go wrong at 1 s and notes what follows."""
 
     def __init__(self, mishap, motor):
-        self.at_s = self.fault_s = self.over_limit_s = None
+        self.fault_s: float = 0.0
+        self.over_limit_s: float = 0.0
         self._fail = at(1.0, lambda line: line.device.mishap(mishap, motor))
 
     def __call__(self, line):
         self._fail(line)
         device, now = line.device, line.now_s
         error = np.abs(device.measured - device.follower.command).max()
-        if self.over_limit_s is None and error > TRACKING_LIMIT_RAD:
+        if not self.over_limit_s and error > TRACKING_LIMIT_RAD:
             self.over_limit_s = now
-        if self.fault_s is None and device.state is State.FAULT:
+        if not self.fault_s and device.state is State.FAULT:
             self.fault_s = now
 
 

@@ -76,6 +76,12 @@ bool mcu_take_tick(void)
     return due;
 }
 
+/* A closed contact pulls PD2 to ground against a resistor to 5 V, so a broken wire stops too. */
+bool mcu_switch_pressed(void)
+{
+    return (PIND & 1 << PIND2) != 0;
+}
+
 void mcu_rest(void)
 {
     cli();

@@ -58,6 +58,11 @@ bool mcu_take_tick(void)
     return due;
 }
 
+bool mcu_switch_pressed(void)
+{
+    return false; /* the simulated board has none */
+}
+
 void mcu_rest(void)
 {
     /* With interrupts held back, one that comes after the question still ends the sleep. */
