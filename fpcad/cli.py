@@ -239,7 +239,7 @@ def run_trajectory(
     port: Annotated[
         str,
         typer.Option(
-            help="Serial port of the controller, as /dev/ttyUSB0; `sim` starts a simulated one."
+            help="Serial port of the controller, as /dev/ttyUSB0; `sim` starts a simulated one, `fw` the firmware."
         ),
     ],
     build: BuildFolder = Path("build"),

@@ -26,6 +26,8 @@ SIMULATED_PORTS = {"sim": simulated_controller, "fw": firmware_process}
 """Controllers that a run starts by itself: the simulator, and the firmware with simulated motors."""
 START_DISTANCE_RAD = float(np.radians(2.0))
 """Way to the start that a run takes unasked."""
+OUTSIDE_RAD = float(np.radians(0.25))
+"""How far beyond its limit a resting joint may be seen: encoders have steps of 0.09 degrees."""
 _APPROACH_SHARE = 0.2
 """Part of the limits that the way to the start may use."""
 
@@ -144,7 +146,20 @@ def _from_present(present: Sample, knots: Knots, limits: JointLimits, far: bool)
             f"{limits.names[worst]} is {np.degrees(distance[worst]):.1f} degrees from where the "
             "trajectory starts (2 are allowed); bring the hand there, or ask for a move to start"
         )
-    return approach(present.command_rad, knots, limits, _APPROACH_SHARE)
+    return approach(_resting_within(present, limits), knots, limits, _APPROACH_SHARE)
+
+
+def _resting_within(present: Sample, limits: JointLimits) -> Array:
+    """Where the path may begin: what the encoders say, or the limit that it lies just beyond."""
+    nearest = np.minimum(np.maximum(present.command_rad, limits.lower_rad), limits.upper_rad)
+    beyond = np.abs(present.command_rad - nearest)
+    worst = int(beyond.argmax())
+    if beyond[worst] > OUTSIDE_RAD:
+        raise StartTooFar(
+            f"{limits.names[worst]} rests {np.degrees(beyond[worst]):.1f} degrees beyond its limit; "
+            "bring it back by hand"
+        )
+    return nearest
 
 
 def _nearest_to_straight(limits: JointLimits) -> Array:

@@ -106,6 +106,22 @@ def test_a_far_hand_moves_to_the_start_when_asked(tmp_path, port_name, controlle
         run_trajectory(file, hand_limits(), device.port)
 
 
+def test_a_hand_that_rests_at_its_limits_is_seen_beyond_them_and_runs(tmp_path, port_name):
+    limits = hand_limits(lower_rad=swing().position.min(axis=0))  # steps of encoders lie around it
+    report = run_trajectory(write_trajectory(tmp_path), limits, f"{port_name}:5")
+    assert report.final_state == "READY"
+
+
+def test_a_hand_beyond_its_limits_is_not_moved(tmp_path, controller):
+    limits = hand_limits(lower_rad=swing().position.min(axis=0))
+    file = write_trajectory(tmp_path)
+    with (
+        controller(limits, limits.lower_rad - 0.01) as device,
+        pytest.raises(StartTooFar, match=r"0\.6 degrees beyond its limit"),
+    ):
+        run_trajectory(file, limits, device.port, move_to_start=True)
+
+
 @pytest.mark.parametrize("damage", [lost_bytes, bit_flips])
 def test_a_bad_line_through_pseudo_terminals_is_overcome(tmp_path, damage, controller):
     file = write_trajectory(tmp_path)
