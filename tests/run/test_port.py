@@ -12,9 +12,11 @@ from fpcad.run.errors import (
     PortForbidden,
     PortMissing,
     PortUnusable,
+    SimulatorError,
 )
 from fpcad.run.port import open_port
 from fpcad.run.run_trajectory import run_trajectory
+from fpcad.run.sim import spawn
 from tests.run.fixtures import hand_limits, write_trajectory
 
 
@@ -69,6 +71,12 @@ def test_a_line_that_breaks_is_named():
     with pytest.raises(LinkLost, match="the line broke"):
         port.write(b"\0")
     port.close()
+
+
+def test_a_firmware_that_is_not_built_comes_with_advice(tmp_path, monkeypatch):
+    monkeypatch.setattr(spawn, "FIRMWARE", tmp_path / "fpcad-firmware")
+    with pytest.raises(SimulatorError, match="`make firmware`"):
+        run_trajectory(write_trajectory(tmp_path), hand_limits(), "fw")
 
 
 @pytest.mark.parametrize("port", ["sim:0", "sim:fast", "sim:1e9", "sim:nan", "fw:0"])

@@ -24,6 +24,8 @@ from fpcad.run.firmware_setup import FirmwareSetup, setup_text
 from fpcad.run.knots import BUFFER_KNOTS
 from fpcad.run.limits import JointLimits
 
+FIRMWARE = Path(__file__).parents[3] / "firmware_host" / "build" / "fpcad-firmware"
+"""The firmware for this machine, as `make firmware` leaves it."""
 _START_S = 30.0
 _END_S = 4.0
 _ENCODER_STEP_RAD = 2 * math.pi / 4096
@@ -142,10 +144,9 @@ def firmware_process(
 
 
 def _firmware() -> Path:
-    program = Path(__file__).parents[3] / "firmware_host" / "build" / "fpcad-firmware"
-    if not program.is_file():
-        raise SimulatorError(f"{program} is not there: build it with `make firmware`")
-    return program
+    if not FIRMWARE.is_file():
+        raise SimulatorError(f"{FIRMWARE} is not there: build it with `make firmware`")
+    return FIRMWARE
 
 
 @contextmanager
