@@ -55,6 +55,7 @@ def range_shares(run: Run) -> tuple[Array, dict[str, Array]]:
 
 def outcome_counts(run: Run) -> dict[str, int]:
     """How many calls ended how, the most frequent first."""
-    outcomes, counts = np.unique(run.calls["outcome"].to_pylist(), return_counts=True)
+    reasons = [reason or ACCEPTED for reason in run.calls["reason"].to_pylist()]
+    outcomes, counts = np.unique(reasons, return_counts=True)
     order = np.argsort(-counts, kind="stable")
     return {str(outcomes[i]): int(counts[i]) for i in order}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,31 +26,34 @@ MAX_THIN = 4000
 
 def exact_paths(run: Run, pack: Packer, rows: Sequence[int]) -> list[Told]:
     """Every stored state of the first twelve hands in `rows`, with the forces that hold the tool."""
-    ids = {int(run.ids[row]): int(row) for row in rows[:MAX_EXACT]}
-    forces = {pose: HoldingForces(run.spec, pose) for pose in run.poses} if ids else {}
+    ids = {int(run.ids[row]) for row in rows[:MAX_EXACT]}
+    return tell_paths(run, pack, stored_paths(run.folder / "paths.parquet", ids))
+
+
+def tell_paths(run: Run, pack: Packer, paths: Iterable[PathStates]) -> list[Told]:
+    """Every state of some paths, with the forces that hold the tool."""
+    forces = {pose: HoldingForces(run.spec, pose) for pose in run.poses}
     hands = {pose: pose_states(run, pose)[:, :6] for pose in run.poses}
-    told = []
-    for path in stored_paths(run.folder / "paths.parquet", ids):
-        row = ids[path.id]
-        design = run.space.internal(run.designs[row])
-        pull = np.where(path.tool_angle_rad < 0, -1.0, 1.0)
-        x = np.hstack([path.joints_rad, path.contacts])
-        held = forces[path.pose].at(design, hands[path.pose][row], path.tool_angle_rad, x, pull)
-        contacts = path.contacts.reshape(len(x), -1, 4)
-        told.append(
-            {
-                "row": row,
-                "pose": path.pose,
-                "turn": pack.exact(path.tool_angle_rad),
-                "position": pack.exact(hands[path.pose][row, :3]),
-                "rotation": pack.exact(hands[path.pose][row, 3:]),
-                "joints": pack.exact(path.joints_rad),
-                "axial": pack.exact(contacts[:, :, 0]),
-                "angle": pack.exact(contacts[:, :, 1]),
-                "forces": pack.exact(held),
-            }
-        )
-    return told
+    return [_tell(run, pack, path, forces[path.pose], hands[path.pose]) for path in paths]
+
+
+def _tell(run: Run, pack: Packer, path: PathStates, forces: HoldingForces, hands: Array) -> Told:
+    row = int(np.searchsorted(run.ids, path.id))
+    design = run.space.internal(run.designs[row])
+    pull = np.where(path.tool_angle_rad < 0, -1.0, 1.0)
+    x = np.hstack([path.joints_rad, path.contacts])
+    contacts = path.contacts.reshape(len(x), -1, 4)
+    return {
+        "row": row,
+        "pose": path.pose,
+        "turn": pack.exact(path.tool_angle_rad),
+        "position": pack.exact(hands[row, :3]),
+        "rotation": pack.exact(hands[row, 3:]),
+        "joints": pack.exact(path.joints_rad),
+        "axial": pack.exact(contacts[:, :, 0]),
+        "angle": pack.exact(contacts[:, :, 1]),
+        "forces": pack.exact(forces.at(design, hands[row], path.tool_angle_rad, x, pull)),
+    }
 
 
 def thin_paths(run: Run, pack: Packer, shown: Sequence[int], merit: Array) -> Told:

@@ -13,6 +13,8 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from fpcad.wield.path import WieldingPath
+
 Array = NDArray[np.float64]
 
 COLUMNS = ["id", "pose", "state", "tool_angle_rad", "joints_rad", "contacts_mm_rad"]
@@ -43,6 +45,13 @@ class PathStates:
             return np.stack([np.interp(angles, self.tool_angle_rad, v) for v in values.T], axis=1)
 
         return PathStates(self.id, self.pose, angles, at(self.joints_rad), at(self.contacts))
+
+
+def path_states(candidate: int, path: WieldingPath) -> PathStates:
+    """A path that was traced just now."""
+    n = len(path.tool_angle_rad)
+    joints, contacts = path.joints_rad.reshape(n, -1), path.contacts.reshape(n, -1)
+    return PathStates(candidate, path.pose, path.tool_angle_rad, joints, contacts)
 
 
 def stored_paths(file: Path, wanted: Collection[int]) -> Iterator[PathStates]:

@@ -26,12 +26,18 @@ def write_report(folder: Path) -> Path:
     return write_whole(folder / FILE, report_page(load(folder)))
 
 
-def report_page(run: Run) -> str:
+def report_page(run: Run, token: str = "") -> str:
     """The page as HTML. It holds its script, its style and all of its data, and loads nothing.
 
     Texts of the spec are escaped, and the page's policy lets no script run but its own.
+
+    Args:
+        run: the run.
+        token: what the live view's page shows to its server; with one, the page asks that server
+            for paths.
     """
     document, block = build_document(run)
+    document["token"] = token
     page = files("fpcad.look") / "page"
     script = (page / "report.js").read_text(encoding="utf-8")
     template = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
@@ -44,6 +50,7 @@ def report_page(run: Run) -> str:
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
         run_json=_for_script(document),
         block=block,
+        live=bool(token),
     )
 
 

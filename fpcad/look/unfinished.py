@@ -42,7 +42,7 @@ def found_calls(folder: Path, manifest: dict[str, Any], spec: Spec) -> pa.Table:
     file = folder / "calls.parquet"
     if _done(manifest, "sample") and file.exists():
         return read_table(file)
-    names = ["call", "parent", "candidate", "outcome", *design_space(spec.hand).names]
+    names = ["number", "parent", "candidate", "outcome", "reason", *design_space(spec.hand).names]
     shards = _shards(folder, manifest, "sample")
     return shards.select(names) if shards is not None else pa.table({name: [] for name in names})
 
@@ -73,7 +73,7 @@ def _sampled_so_far(folder: Path, manifest: dict[str, Any], spec: Spec) -> pa.Ta
     if shards is not None and tables:
         accepted = shards.filter(pc.field("outcome") == "accepted")
         ids = accepted["candidate"]
-        accepted = accepted.drop_columns(["candidate", "call", "outcome"])
+        accepted = accepted.drop_columns(["candidate", "number", "outcome", "reason"])
         tables.append(accepted.append_column("id", ids).select(tables[0].column_names))
     if tables:
         return pa.concat_tables(tables, promote_options="default")

@@ -31,10 +31,24 @@ def run_stages(build: Build, last: str, force: bool = False) -> dict[str, Any]:
         return _run_stages(build, last, force)
 
 
-def _run_stages(build: Build, last: str, force: bool) -> dict[str, Any]:
-    before, known = "", read_manifest(build.folder)["stages"]
+def is_current(build: Build, stage: str) -> bool:
+    """Whether a stage's files are those of this spec and this version; fills in `build.keys`."""
+    records = read_manifest(build.folder)["stages"]
+    _fill_keys(build)
+    chosen = next(one for one in STAGES if one.name == stage)
+    same = records.get(stage, {}).get("key") == build.keys[stage]
+    return same and _up_to_date(build, chosen, records)
+
+
+def _fill_keys(build: Build) -> None:
+    before = ""
     for stage in STAGES:
         before = build.keys[stage.name] = stage.key(build.spec, before)
+
+
+def _run_stages(build: Build, last: str, force: bool) -> dict[str, Any]:
+    known = read_manifest(build.folder)["stages"]
+    _fill_keys(build)
     valid = {
         stage.name: known[stage.name]
         for stage in STAGES

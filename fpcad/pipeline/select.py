@@ -57,7 +57,7 @@ def _settle(build: Build, metrics: pa.Table) -> Counts:
     choice = choose(ranked, build.spec.selection.rule)
     write_table(build.folder / METRICS, ranked)
     write_paths(build, list({choice.id, *_kept(build, ranked)}), partial(_evaluate_again, build))
-    write_json(build.folder / SELECTED, _selected(build, choice))
+    write_json(build.folder / SELECTED, describe_choice(build, choice))
     return {"selected": choice.id, "front": int(sum(ranked["pareto"].to_pylist()))}
 
 
@@ -80,8 +80,8 @@ def _evaluate_again(build: Build, ids: list[int]) -> Iterator[Evaluation]:
             yield from workers.map(partial(evaluate_candidate, space), candidates)
 
 
-def _selected(build: Build, choice: Choice) -> dict[str, Any]:
-    """What selected.json tells."""
+def describe_choice(build: Build, choice: Choice) -> dict[str, Any]:
+    """What selected.json tells of a hand whose paths are kept."""
     space = design_space(build.spec.hand)
     named = next(c.named for c in read_candidates(build) if c.id == choice.id)
     demand = {

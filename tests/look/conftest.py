@@ -75,5 +75,5 @@ def show(page: Page, file: Path) -> Page:
     """Open a page and wait until it answers."""
     page.goto(file.as_uri())
     page.wait_for_selector("html[data-ready]", state="attached")
-    page.wait_for_function("!fpcad.figures.length || fpcad.figures.every((f) => f.width > 0)")
+    page.wait_for_function("() => !fpcad.figures.length || fpcad.figures.every((f) => f.width > 0)")
     return page

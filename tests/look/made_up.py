@@ -67,17 +67,19 @@ def made_up_candidates(spec: Spec, n: int, random: np.random.Generator) -> pa.Ta
 
 def made_up_calls(spec: Spec, candidates: pa.Table, random: np.random.Generator) -> pa.Table:
     """Calls of which about two in three are accepted, one for every hand but the first."""
-    outcomes, found = [], []
+    reasons, found = [], []
     for candidate in candidates["id"].to_pylist()[1:]:
         while random.random() < 1 / 3:
-            outcomes.append("too close")
+            reasons.append("too close")
             found.append(-1)
-        outcomes.append("accepted")
+        reasons.append("")
         found.append(candidate)
     n, names = len(found), design_space(spec.hand).names
-    numbers = {"call": np.arange(n), "parent": np.zeros(n, int), "candidate": np.array(found, int)}
+    numbers = {"number": np.arange(n), "parent": np.zeros(n, int), "candidate": np.array(found, int)}
     designs = {name: np.zeros(n) for name in names}
-    return pa.table({**numbers, "outcome": pa.array(outcomes, pa.string()), **designs})
+    outcomes = ["rejected" if reason else "accepted" for reason in reasons]
+    words = {"outcome": pa.array(outcomes, pa.string()), "reason": pa.array(reasons, pa.string())}
+    return pa.table({**numbers, **words, **designs})
 
 
 def made_up_metrics(spec: Spec, n: int, random: np.random.Generator) -> pa.Table:

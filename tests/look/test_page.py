@@ -56,7 +56,7 @@ def test_the_page_says_nothing_on_the_console_and_asks_nobody(page: Page, real_p
     page.on("pageerror", lambda error: said.append(str(error)))
     page.on("request", lambda request: asked.append(request.url))
     show(page, real_page)
-    page.locator("#play").click()
+    page.locator("#player .play").click()
     page.locator("label.chip", has_text="printed parts").click()
     page.wait_for_timeout(300)
     assert said == []
@@ -117,12 +117,20 @@ def test_links_lie_where_the_model_has_them(opened: Page, real_run: Run):
                 assert shown == pytest.approx(T, abs=1e-4)
 
 
+def test_parts_and_contact_shapes_are_never_drawn_together(opened: Page):
+    seen = "[...new Set(fpcad.stage.hand.{}.map((mesh) => mesh.visible))]"
+    for wanted in (False, True):
+        opened.locator("#player input[type=checkbox]").set_checked(wanted)
+        assert opened.evaluate(seen.format("parts")) == [wanted]
+        assert opened.evaluate(seen.format("shown")) == [not wanted]
+
+
 def test_playing_moves_the_tool_and_pauses(opened: Page):
-    opened.locator("#play").click()
+    opened.locator("#player .play").click()
     start = opened.evaluate("fpcad.player.frame")
     opened.wait_for_function("(start) => fpcad.player.frame !== start", arg=start)
-    opened.locator("#play").click()
-    assert opened.locator("#play").inner_text() == "Play"
+    opened.locator("#player .play").click()
+    assert opened.locator("#player .play").inner_text() == "Play"
 
 
 def test_the_keyboard_goes_from_hand_to_hand(opened: Page):

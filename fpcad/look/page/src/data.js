@@ -6,9 +6,13 @@ const MISSING = -32768;
 /** Reads the document and inflates its block; see fpcad/look/pack.py. */
 export async function readRun() {
   const run = JSON.parse(document.getElementById("run").textContent);
-  const block = await inflate(document.getElementById("block").textContent.trim());
-  resolve(run, block);
-  return run;
+  return unpack(run, document.getElementById("block").textContent.trim());
+}
+
+/** Puts the numbers of a block [base64] in the places of the references to them. */
+export async function unpack(told, block) {
+  resolve(told, await inflate(block));
+  return told;
 }
 
 async function inflate(base64) {

@@ -70,7 +70,7 @@ export class Hand {
 
   /** Shows the printed parts, where there are any, or the contact shapes. */
   showParts(parts) {
-    const printed = parts && this.parts !== undefined;
+    const printed = Boolean(parts) && this.parts !== undefined; // three.js draws what is not exactly false
     this.shown.forEach((mesh) => (mesh.visible = !printed));
     this.parts?.forEach((mesh) => (mesh.visible = printed));
   }

@@ -1,7 +1,10 @@
 // The page: reads the run, draws every figure, ties them together by one selection.
 
+import { Actions } from "./actions.js";
+import { Compare } from "./compare.js";
 import { make } from "./dom.js";
 import { Lines } from "./lines.js";
+import { List } from "./list.js";
 import { Numbers } from "./numbers.js";
 import { Parallel } from "./parallel.js";
 import { Player } from "./player.js";
@@ -21,6 +24,10 @@ async function start() {
   const stage = run.candidates.count ? openStage(run) : null;
   const player = run.candidates.count ? new Player(at("player"), state, stage) : null;
   new Numbers(at("numbers"), state);
+  if (player) {
+    new List(at("list"), at("list-controls"), state);
+    new Actions(at("actions"), state, stage, player, new Compare(at("compare"), run));
+  }
   bindControls(run, state);
   onThemeChange(() => {
     figures.forEach((figure) => figure.redraw());
@@ -103,7 +110,15 @@ function nearest(values, x) {
 function parallel(run, state) {
   const parameters = run.parameters.filter((c) => c.free).map((c) => ({ ...c, range: c.bounds }));
   const scores = run.scores.map((c) => ({ ...c, range: [0, 100] }));
-  return new Parallel(at("parallel"), state, [...parameters, ...scores]);
+  const metrics = run.metrics.map((c) => ({ ...c, range: span(c.data) }));
+  return new Parallel(at("parallel"), state, [...parameters, ...scores], metrics);
+}
+
+/** Least and greatest number, apart from each other. */
+function span(values) {
+  const known = values.filter((v) => !Number.isNaN(v));
+  const [low, high] = known.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [Infinity, -Infinity]);
+  return low < high ? [low, high] : [(known[0] ?? 0) - 1, (known[0] ?? 0) + 1];
 }
 
 /** The 3D view, or a sentence where the browser cannot draw it. */

@@ -15,9 +15,9 @@ const CHUNK = 1500; // lines drawn between two frames
 const NEAR = 12;
 
 export class Parallel {
-  /** @param columns {name, label, unit, data, range} of each axis. */
-  constructor(host, state, columns) {
-    Object.assign(this, { state, columns, width: 0, drawing: 0 });
+  /** @param columns {name, label, unit, data, range} of each axis; `others` have filters only. */
+  constructor(host, state, columns, others = []) {
+    Object.assign(this, { state, columns, others, width: 0, drawing: 0 });
     this.lines = make("canvas", { "aria-hidden": "true" });
     this.marks = make("canvas", { "aria-hidden": "true" });
     this.box = make("div", { class: "plot parallel" }, this.lines, this.marks);
@@ -72,6 +72,7 @@ export class Parallel {
   }
 
   #showBrush(column) {
+    if (!column.brush) return;
     const limit = this.state.limits.get(column.name)?.range;
     const inside = limit && limit.map((v) => Math.min(Math.max(v, column.range[0]), column.range[1]));
     column.brush.group.call(column.brush.brush.move, inside ? [column.y(inside[1]), column.y(inside[0])] : null);
@@ -79,7 +80,7 @@ export class Parallel {
 
   /** Number fields that do what the brushes do, for the keyboard. */
   #filters() {
-    const rows = this.columns.map((column) => {
+    const rows = [...this.columns, ...this.others].map((column) => {
       const field = (name, word) => (column[name] = make("input", {
         type: "number", step: "any", "aria-label": `${column.label}, ${word}`, onchange: () => this.#typed(column),
       }));
@@ -100,7 +101,7 @@ export class Parallel {
   }
 
   #clear() {
-    for (const column of this.columns) {
+    for (const column of [...this.columns, ...this.others]) {
       column.low.value = column.high.value = "";
       if (this.state.limits.has(column.name)) this.state.limit(column, null);
       this.#showBrush(column);

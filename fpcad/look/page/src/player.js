@@ -6,15 +6,18 @@ import { motionOf } from "./motion.js";
 const DEG = 180 / Math.PI;
 const SPEED = 40 / DEG; // turn of the tool while playing [rad/s]
 
+let players = 0; // each has its own group of radio buttons
+
 export class Player {
   constructor(host, state, stage) {
     Object.assign(this, { state, stage, pose: 0, playing: false, direction: 1 });
     const { poses, meshes } = state.run;
+    const group = `pose-${players++}`;
     const radio = ({ name }, i) => make("label", { class: "chip" },
-      make("input", { type: "radio", name: "pose", value: i, checked: i === 0, onchange: () => this.#setPose(i) }), name);
+      make("input", { type: "radio", name: group, value: i, checked: i === 0, onchange: () => this.#setPose(i) }), name);
     this.slider = make("input", { type: "range", min: "0", step: "1", "aria-label": "Tool along its path",
       oninput: () => (this.pause(), this.show(+this.slider.value)) });
-    this.button = make("button", { type: "button", id: "play", onclick: () => (this.playing ? this.pause() : this.play()) }, "Play");
+    this.button = make("button", { type: "button", class: "play", onclick: () => (this.playing ? this.pause() : this.play()) }, "Play");
     this.parts = make("input", { type: "checkbox", onchange: () => stage?.setParts(this.parts.checked) });
     this.told = make("p", { class: "told", "aria-live": "off" });
     const reset = make("button", { type: "button", onclick: () => stage?.reset() }, "Reset view");
@@ -37,6 +40,11 @@ export class Player {
     this.pause();
     this.pose = index;
     this.#load();
+  }
+
+  /** Shows the same hand's path, now that it is known. */
+  reload() {
+    if (!this.playing) this.#load();
   }
 
   #load() {

@@ -138,6 +138,13 @@ export class Stage {
     this.render();
   }
 
+  dispose() {
+    this.controls.dispose();
+    this.hand?.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
   describe(text) {
     this.canvas.setAttribute("aria-label", text);
   }
