@@ -148,9 +148,11 @@ def _rejected(build: Build, candidates: Sequence[Candidate]) -> list[Subject]:
     """Calls that reached all poses but are not held in one, with their parents' states."""
     names = design_space(build.spec.hand).names
     return [
-        Subject(row["call"], np.array([row[n] for n in names]), _states(candidates[row["parent"]]))
+        Subject(
+            row["number"], np.array([row[n] for n in names]), _states(candidates[row["parent"]])
+        )
         for row in read_table(build.folder / "calls.parquet").to_pylist()
-        if row["outcome"].endswith(STATICS)
+        if row["reason"].endswith(STATICS)
     ]
 
 

@@ -38,7 +38,8 @@ LIMITS = {
     "overlap": Limit(1e-6, "overlap of solids that must stay apart [mm]"),
     "bounds": Limit(1e-6, "excess over windows, joint limits and hand bounds [mm, rad]"),
     "skin": Limit(1e-6, "excess of contacts over the skin's edges [mm]"),
-    "torque": Limit(1.0, "least largest joint torque, both directions, over its cap"),
+    # Both linear programs keep their constraints to about 1e-6 only.
+    "torque": Limit(1.0 + 1e-6, "least largest joint torque, both directions, over its cap"),
 }
 
 

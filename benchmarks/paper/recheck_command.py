@@ -44,7 +44,7 @@ def main() -> None:
 def residual_section(checked: Recheck) -> str:
     """The independent measures in words and a table."""
     rows = [
-        (limit.meaning, f"{checked.worst[name]:.1e}", f"{limit.most:g}", _of(checked, name))
+        (limit.meaning, f"{checked.worst[name]:.1e}", f"{limit.most:.7g}", _of(checked, name))
         for name, limit in LIMITS.items()
     ]
     return "\n\n".join(

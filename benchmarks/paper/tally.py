@@ -94,11 +94,11 @@ def tally(folder: Path) -> Tally:
     spec = load_spec(folder / "spec.yaml")
     space, poses = design_space(spec.hand), list(spec.poses)
     candidates = read_table(folder / "candidates.parquet")
-    calls = read_table(folder / "calls.parquet").sort_by("call")
+    calls = read_table(folder / "calls.parquet").sort_by("number")
     metrics = read_table(folder / "metrics.parquet").sort_by("id")
     named = np.stack([column(candidates, name) for name in space.names], axis=1)
     tmr = {pose: column(metrics, f"{pose}_tmr_deg") for pose in poses}
-    outcomes = calls["outcome"].to_pylist()
+    outcomes = [reason or "accepted" for reason in calls["reason"].to_pylist()]
     return Tally(
         spec=spec,
         outcomes=Counter(outcomes),
