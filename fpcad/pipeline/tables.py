@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fpcad.model.pose import StateLayout
 from fpcad.model.state import state_columns
-from fpcad.sample.rrt import Call, Proposal
+from fpcad.sample.rrt import ACCEPTED, Call, Proposal
 from fpcad.sample.space import DesignSpace
 from fpcad.sample.tree import Candidate
 from fpcad.solve.attempt import SolvedPose, Workbench
@@ -19,14 +19,16 @@ from fpcad.wield.path import WieldingPath
 
 Array = NDArray[np.float64]
 
+REJECTED = "rejected"
 MEASURES = ("cost", *(f"residual_{field}" for field in Residual._fields))
 
 
 def call_schema(space: DesignSpace) -> pa.Schema:
     """Columns of calls.parquet."""
-    integers = [(name, pa.int64()) for name in ("call", "parent", "candidate")]
+    integers = [(name, pa.int64()) for name in ("number", "parent", "candidate")]
+    words = [(name, pa.string()) for name in ("outcome", "reason")]
     designs = [(name, pa.float64()) for name in space.names]
-    return pa.schema([*integers, ("outcome", pa.string()), *designs])
+    return pa.schema([*integers, *words, *designs])
 
 
 def candidate_schema(bench: Workbench, space: DesignSpace) -> pa.Schema:
@@ -42,11 +44,13 @@ def candidate_schema(bench: Workbench, space: DesignSpace) -> pa.Schema:
 
 def call_row(call: Call, space: DesignSpace) -> dict[str, Any]:
     """One RRT call as a row."""
-    numbers = {"call": call.proposal.call, "parent": call.proposal.parent}
+    numbers = {"number": call.proposal.call, "parent": call.proposal.parent}
+    accepted = call.outcome == ACCEPTED
     return {
         **numbers,
         "candidate": call.candidate,
-        "outcome": call.outcome,
+        "outcome": ACCEPTED if accepted else REJECTED,
+        "reason": "" if accepted else call.outcome,
         **dict(zip(space.names, call.proposal.named.tolist(), strict=True)),
     }
 
@@ -54,7 +58,9 @@ def call_row(call: Call, space: DesignSpace) -> dict[str, Any]:
 def read_call(row: dict[str, Any], space: DesignSpace) -> Call:
     """Inverse of :func:`call_row`."""
     named = np.array([row[name] for name in space.names])
-    return Call(Proposal(row["call"], row["parent"], named), row["outcome"], row["candidate"])
+    return Call(
+        Proposal(row["number"], row["parent"], named), row["reason"] or ACCEPTED, row["candidate"]
+    )
 
 
 def candidate_row(candidate: Candidate, bench: Workbench, space: DesignSpace) -> dict[str, Any]:
