@@ -19,6 +19,7 @@ OPTIONS = {
     "ipopt.tol": 1e-9,
     "ipopt.constr_viol_tol": 1e-10,
     "ipopt.bound_relax_factor": 0.0,
+    "ipopt.mu_strategy": "adaptive",
     "ipopt.max_iter": 500,
 }
 
