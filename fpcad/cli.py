@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -38,6 +40,8 @@ app = typer.Typer(
 DESIGNS = Path("designs")
 INTERRUPTED = 130
 
+Verb = Literal["solve", "sample", "evaluate", "select", "export", "report"]
+
 Design = Annotated[
     str, typer.Argument(metavar="NAME", help="A design: `clay` for designs/clay.yaml, or a file.")
 ]
@@ -59,11 +63,23 @@ Force = Annotated[bool, typer.Option("--force", help="Make the last stage again.
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout.")]
 
 
+def _tell_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"fpcad {version('fpcad')}")
+        raise typer.Exit
+
+
 @app.callback()
 def options(
     verbose: Annotated[
         int, typer.Option("--verbose", "-v", count=True, help="Log more; twice for everything.")
     ] = 0,
+    show_version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_tell_version, is_eager=True, help="Tell the version and exit."
+        ),
+    ] = False,
 ) -> None:
     """Options that come before the verb."""
     start_logging(verbose)
@@ -98,82 +114,57 @@ def schema() -> None:
     typer.echo(json.dumps(json_schema(), indent=2))
 
 
-@app.command()
-def design(
-    name: Design,
-    build: BuildFolder = Path("build"),
-    workers: WorkerCount = 0,
-    scheduler: Scheduler = None,
-    slurm: Slurm = False,
-    force: Force = False,
-    as_json: AsJson = False,
-) -> None:
-    """Make the whole hand: solve, sample, evaluate, select, export, report."""
-    _run("report", name, build, workers, force, as_json, scheduler, slurm)
+def _here(last: Verb, told: str) -> Callable[..., None]:
+    """A verb that runs the stages up to `last` on this machine's cores."""
+
+    def command(
+        name: Design,
+        build: BuildFolder = Path("build"),
+        workers: WorkerCount = 0,
+        force: Force = False,
+        as_json: AsJson = False,
+    ) -> None:
+        _run(last, name, build, workers, force, as_json)
+
+    command.__doc__ = told
+    return command
 
 
-@app.command()
-def solve(
-    name: Design,
-    build: BuildFolder = Path("build"),
-    workers: WorkerCount = 0,
-    force: Force = False,
-    as_json: AsJson = False,
-) -> None:
-    """Solve the foundational poses of the first hand."""
-    _run("solve", name, build, workers, force, as_json)
+def _anywhere(last: Verb, told: str) -> Callable[..., None]:
+    """A verb whose long stages may run on other machines too."""
+
+    def command(
+        name: Design,
+        build: BuildFolder = Path("build"),
+        workers: WorkerCount = 0,
+        scheduler: Scheduler = None,
+        slurm: Slurm = False,
+        force: Force = False,
+        as_json: AsJson = False,
+    ) -> None:
+        _run(last, name, build, workers, force, as_json, scheduler, slurm)
+
+    command.__doc__ = told
+    return command
 
 
-@app.command()
-def sample(
-    name: Design,
-    build: BuildFolder = Path("build"),
-    workers: WorkerCount = 0,
-    scheduler: Scheduler = None,
-    slurm: Slurm = False,
-    force: Force = False,
-    as_json: AsJson = False,
-) -> None:
-    """Sample hands that reach all poses: candidates.parquet, calls.parquet."""
-    _run("sample", name, build, workers, force, as_json, scheduler, slurm)
-
-
-@app.command()
-def evaluate(
-    name: Design,
-    build: BuildFolder = Path("build"),
-    workers: WorkerCount = 0,
-    scheduler: Scheduler = None,
-    slurm: Slurm = False,
-    force: Force = False,
-    as_json: AsJson = False,
-) -> None:
-    """Trace each candidate's wielding paths and measure them."""
-    _run("evaluate", name, build, workers, force, as_json, scheduler, slurm)
-
-
-@app.command()
-def select(
-    name: Design,
-    build: BuildFolder = Path("build"),
-    workers: WorkerCount = 0,
-    force: Force = False,
-    as_json: AsJson = False,
-) -> None:
-    """Score the candidates and choose one: metrics.parquet, paths.parquet, selected.json."""
-    _run("select", name, build, workers, force, as_json)
-
-
-@app.command()
-def export(
-    name: Design,
-    build: BuildFolder = Path("build"),
-    workers: WorkerCount = 0,
-    force: Force = False,
-    as_json: AsJson = False,
-) -> None:
-    """Write the chosen hand's parts, URDF, transmission and trajectories."""
-    _run("export", name, build, workers, force, as_json)
+STAGE_VERBS: dict[str, Callable[..., None]] = {
+    "design": _anywhere(
+        "report", "Make the whole hand: solve, sample, evaluate, select, export, report."
+    ),
+    "solve": _here("solve", "Solve the foundational poses of the first hand."),
+    "sample": _anywhere(
+        "sample", "Sample hands that reach all poses: candidates.parquet, calls.parquet."
+    ),
+    "evaluate": _anywhere("evaluate", "Trace each candidate's wielding paths and measure them."),
+    "select": _here(
+        "select",
+        "Score the candidates and choose one: metrics.parquet, paths.parquet, selected.json.",
+    ),
+    "export": _here("export", "Write the chosen hand's parts, URDF, transmission, trajectories."),
+}
+for _verb, _command in STAGE_VERBS.items():
+    app.command(_verb)(_command)
 
 
 @app.command()
@@ -291,9 +282,6 @@ def main() -> None:
     except KeyboardInterrupt:
         console.print("interrupted; finished work is kept, the same command goes on")
         sys.exit(INTERRUPTED)
-
-
-Verb = Literal["solve", "sample", "evaluate", "select", "export", "report"]
 
 
 def _run(
