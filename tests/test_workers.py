@@ -120,10 +120,12 @@ def test_a_pool_without_processes_is_refused():
 @pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
 def test_workers_end_with_their_parent(tmp_path, ending):
     command = [sys.executable, "-c", "from tests.errands import main; main()", str(tmp_path)]
-    parent = subprocess.Popen(command, cwd=ROOT, stderr=subprocess.DEVNULL)
+    # A shell's background job ignores SIGINT, and so would what it starts.
+    heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    parent = subprocess.Popen(command, cwd=ROOT, stderr=subprocess.DEVNULL, preexec_fn=heed)
     eventually(lambda: len(list(tmp_path.glob("*.pid"))) == 2)
     parent.send_signal(ending)
-    parent.wait()
+    parent.wait(timeout=60)
     workers = [int(file.stem) for file in tmp_path.glob("*.pid")]
     eventually(lambda: not any(alive(worker) for worker in workers))
 
