@@ -133,7 +133,7 @@ def load(folder: Path | str) -> Run:
     candidates = found_candidates(folder, manifest, spec, warnings)
     metrics = found_metrics(folder, manifest, spec, warnings)
     calls = found_calls(folder, manifest, spec)
-    _check_columns(folder, manifest, spec, candidates)
+    _check_columns(folder, manifest, spec, candidates, calls)
     chosen = _chosen(folder, manifest)
     if chosen is None and metrics.num_rows:
         warnings.append("No hand is chosen yet.")
@@ -159,15 +159,18 @@ def _chosen(folder: Path, manifest: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def _check_columns(
-    folder: Path, manifest: dict[str, Any], spec: Spec, candidates: pa.Table
+    folder: Path, manifest: dict[str, Any], spec: Spec, candidates: pa.Table, calls: pa.Table
 ) -> None:
     wanted = ["id", "parent", *design_space(spec.hand).names]
     wanted += [column for pose in spec.poses for column in columns_of(spec, pose)]
-    missing = [name for name in wanted if name not in candidates.column_names]
-    if missing:
-        raise StoreError(
-            _other_version(folder, manifest, f"candidates.parquet has no column `{missing[0]}`")
-        )
+    for file, table, names in (
+        ("candidates", candidates, wanted),
+        ("calls", calls, ["candidate", "outcome", "reason"]),
+    ):
+        missing = [name for name in names if name not in table.column_names]
+        if missing:
+            found = f"{file}.parquet has no column `{missing[0]}`"
+            raise StoreError(_other_version(folder, manifest, found))
 
 
 def _other_version(folder: Path, manifest: dict[str, Any], found: str) -> str:

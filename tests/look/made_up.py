@@ -75,7 +75,11 @@ def made_up_calls(spec: Spec, candidates: pa.Table, random: np.random.Generator)
         reasons.append("")
         found.append(candidate)
     n, names = len(found), design_space(spec.hand).names
-    numbers = {"number": np.arange(n), "parent": np.zeros(n, int), "candidate": np.array(found, int)}
+    numbers = {
+        "number": np.arange(n),
+        "parent": np.zeros(n, int),
+        "candidate": np.array(found, int),
+    }
     designs = {name: np.zeros(n) for name in names}
     outcomes = ["rejected" if reason else "accepted" for reason in reasons]
     words = {"outcome": pa.array(outcomes, pa.string()), "reason": pa.array(reasons, pa.string())}

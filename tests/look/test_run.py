@@ -130,11 +130,17 @@ def test_a_spec_of_another_version_is_told(made_up: Run, tmp_path: Path):
         load(folder)
 
 
-def test_candidates_of_another_version_are_told(made_up: Run, tmp_path: Path):
+@pytest.mark.parametrize(
+    ("file", "column"),
+    [("candidates", "d4_finger_diameter_mm"), ("calls", "reason"), ("calls", "candidate")],
+)
+def test_tables_of_another_version_are_told(made_up: Run, tmp_path: Path, file, column):
     folder = copied(made_up, tmp_path / "clay")
-    table = read_table(folder / "candidates.parquet").drop_columns(["d4_finger_diameter_mm"])
-    write_table(folder / "candidates.parquet", table)
-    with pytest.raises(StoreError, match="has no column `d4_finger_diameter_mm`"):
+    table = read_table(folder / f"{file}.parquet").drop_columns([column])
+    write_table(folder / f"{file}.parquet", table)
+    with pytest.raises(
+        StoreError, match=f"made by fpcad .*{file}.parquet has no column `{column}`"
+    ):
         load(folder)
 
 
