@@ -112,9 +112,11 @@ def compiler() -> str | None:
 def cache_key(*parts: str) -> str:
     """Name of what depends on `parts`, on the model's source code and on CasADi's version."""
     digest = hashlib.sha256()
-    for source in sorted(resources.files("fpcad.model").iterdir(), key=lambda f: f.name):
-        if source.name.endswith(".py"):
-            digest.update(source.read_bytes())
+    package = resources.files("fpcad")
+    model = (f for f in package.joinpath("model").iterdir() if f.name.endswith(".py"))
+    below = (package.joinpath("units.py"), package.joinpath("spec", "templates.py"))
+    for source in (*sorted(model, key=lambda f: f.name), *below):
+        digest.update(source.read_bytes())
     for part in (ca.CasadiMeta.version(), " ".join(COMPILER_FLAGS), *parts):
         digest.update(b"\0" + part.encode())
     return digest.hexdigest()[:20]
@@ -151,6 +153,7 @@ def _write_beside(target: Path, write: Callable[[Path], None]) -> None:
     beside = Path(name)
     try:
         write(beside)
+        beside.chmod(0o644)  # mkstemp's files are their owner's alone, and a cache may be shared
         beside.replace(target)
     finally:
         beside.unlink(missing_ok=True)
