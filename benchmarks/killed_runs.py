@@ -41,7 +41,10 @@ def main() -> None:
         random, same = np.random.default_rng(options.seed), 0
         for kill in range(options.kills):
             victim = root / f"kill-{kill}"
-            told = kill_once(victim, spec, options.workers, kill, random, seconds, steps)
+            while not (
+                told := kill_once(victim, spec, options.workers, kill, random, seconds, steps)
+            ):
+                shutil.rmtree(victim)  # it had ended before, as the machine has less to do by now
             orphans = left_over(victim.name)
             run(victim, spec, options.workers, NEVER).wait()
             equal = contents(victim) == finished
@@ -108,7 +111,7 @@ def kill_once(
     seconds: float,
     steps: int,
 ) -> str:
-    """Start a run that is killed once, and tell when."""
+    """Start a run that is killed once, and tell when; nothing if it ended before that."""
     folder.mkdir()
     shutil.copytree(folder.parent / "undisturbed" / ".kernels", folder / ".kernels")
     if kill % 2:
@@ -122,9 +125,7 @@ def kill_once(
         process.kill()
         told = f"killed after {after:.1f} s"
     process.communicate()
-    if process.returncode != -signal.SIGKILL:
-        told += " (it had ended before)"
-    return told
+    return told if process.returncode == -signal.SIGKILL else ""
 
 
 def left_over(mark: str) -> int:
