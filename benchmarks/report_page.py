@@ -69,7 +69,9 @@ def measure_browser(file: Path) -> None:
         tab.wait_for_timeout(3000)
         handled, shown, worst = tab.evaluate(CLICKS)
         print(f"opened in {sorted(opened)[2]:.0f} ms (median of 5, from navigation to all drawn)")
-        print(f"click: handled in {handled:.0f} ms, shown in {shown:.0f} ms, at worst {worst:.0f} ms")
+        print(
+            f"click: handled in {handled:.0f} ms, shown in {shown:.0f} ms, at worst {worst:.0f} ms"
+        )
         browser.close()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -151,10 +151,10 @@ def tree_cost(bench: Workbench, first: Candidate) -> Iterator[Figure]:
     tree.add(Candidate(0, -1, first.named, first.poses))
     marks: list[tuple[int, int, float]] = []
 
-    def accept_all(batch: list[tuple[Proposal, object]]) -> list[Attempt]:
+    def accept_all(batch: Sequence[tuple[Proposal, object]]) -> list[Attempt]:
         return [Attempt(proposal.named, first.poses, "") for proposal, _ in batch]
 
-    for _ in grow(tree, settings, accept_all, calls):  # type: ignore[arg-type]
+    for _ in grow(tree, settings, accept_all, calls):
         if len(tree.candidates) // 500 != (marks[-1][0] // 500 if marks else 0):
             marks.append((len(tree.candidates), len(calls), time.perf_counter()))
     cost = {b[0] // 500 * 500: (b[2] - a[2]) / (b[1] - a[1]) * 1e6 for a, b in pairwise(marks)}

@@ -1,8 +1,8 @@
 """Attempting all poses of a new hand: the own solver, IPOPT and SLSQP on the same tasks.
 
-IPOPT gets compiled exact derivatives, the parent's state to start from, and the best of six settings
-that were tried (a monotone barrier with and without its warm start, other pushes off the bounds and
-relaxed bounds solved fewer tasks and took longer than the adaptive barrier). SLSQP (SciPy) gets the
+IPOPT gets compiled exact derivatives, the parent's state to start from, and the fastest of ten
+settings that were tried: the adaptive barrier. A monotone one with and without warm start, other
+pushes off the bounds and relaxed bounds took longer; see docs/performance.md. SLSQP (SciPy) gets the
 same compiled first derivatives as the own solver. All results are measured by the same residual
 kernel and count only where it accepts them.
 """

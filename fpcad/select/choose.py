@@ -117,8 +117,13 @@ def _reason(table: pa.Table, criterion: Criterion, selectable: Mask, row: int) -
     return (
         f"best {criterion.merit_name} ({criterion.merit[row]:.1f}) of "
         f"{_hands(int(selectable.sum()))} {criterion.group}; {_hands(table.num_rows)} in all, "
-        f"{int(flags(table, 'makeable').sum())} of them can be made"
+        f"{_refusals(int(np.sum(~flags(table, 'makeable'))))}"
     )
+
+
+def _refusals(count: int) -> str:
+    """Making is tried for the chosen hand alone, so of the others only refusals are known."""
+    return "none refused so far" if count == 0 else f"{count} refused"
 
 
 def _why_none(table: pa.Table) -> str:

@@ -75,7 +75,10 @@ def test_a_failed_hand_is_not_chosen(harmed):
 def test_sampling_rejects_calls_that_fail(tmp_path, kernel_cache):
     build = small_build(tmp_path, kernel_cache, 2, hire=hire_saboteurs)
     manifest = run_stages(build, "sample")
-    outcomes = {row["number"]: row["reason"] or row["outcome"] for row in rows(build.folder, "calls.parquet")}
+    outcomes = {
+        row["number"]: row["reason"] or row["outcome"]
+        for row in rows(build.folder, "calls.parquet")
+    }
     assert {call: outcomes[call] for call in REASONS} == REASONS
     assert outcomes[13] not in (ACCEPTED, "")
     assert manifest["stages"]["sample"]["counts"]["candidates"] == build.spec.sampling.candidates

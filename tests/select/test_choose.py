@@ -106,10 +106,10 @@ def test_noise_below_the_resolutions_changes_no_choice(rule):
 def test_the_reason_tells_the_numbers():
     table = ranked(BY_HAND, pareto=[True, True, False, False], makeable=[True, True, True, False])
     assert choose(table, "best_mean_on_front").reason == (
-        "best mean score (55.0) of 2 hands on the Pareto front; 4 hands in all, 3 of them can be made"
+        "best mean score (55.0) of 2 hands on the Pareto front; 4 hands in all, 1 refused"
     )
     assert choose(table, "best_worst_score").reason == (
-        "best lowest score (50.0) of 3 hands that can be made; 4 hands in all, 3 of them can be made"
+        "best lowest score (50.0) of 3 hands that can be made; 4 hands in all, 1 refused"
     )
 
 
