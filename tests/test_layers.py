@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[1]
 ORDER = ("spec", "model", "solve", "sample", "wield", "select", "make", "run")
 COMMON = {"", "errors", "units"}  # "" is the package itself
 SUPPORT = {"store", "workers", "progress"}
-TOP = {"cli", "console", "drive", "explore", "pipeline", "summary", "__main__"}
+TOP = {"cli", "commands", "pipeline", "__main__"}
 LOOK_MAY = {"look", "spec", "model", "sample", "wield", "select", "store", "errors", "units"}
 SELECT_MAY = {*COMMON, "spec", "select"}  # it ranks tables that it is given
 

@@ -16,7 +16,7 @@ from benchmarks.paper.recheck import recheck
 from benchmarks.paper.recheck_command import HANDS, IPOPT_HANDS
 from benchmarks.paper.recheck_ipopt import compare_with_ipopt
 from benchmarks.paper.results import Results, outcome
-from fpcad.console import ConsoleReporter
+from fpcad.commands.console import ConsoleReporter
 from fpcad.pipeline.stage import Build, Reporter
 from fpcad.spec.load import load_spec
 from fpcad.store import write_whole

@@ -16,7 +16,7 @@ from benchmarks.paper.recheck_ipopt import (
     PoseComparison,
     compare_with_ipopt,
 )
-from fpcad.console import ConsoleReporter
+from fpcad.commands.console import ConsoleReporter
 from fpcad.pipeline.stage import Build
 from fpcad.spec.load import load_spec
 from fpcad.workers import available_cores

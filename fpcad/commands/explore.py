@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from fpcad.console import ConsoleReporter, console
+from fpcad.commands.console import ConsoleReporter, console
 from fpcad.look.paths import PathStates, path_states
 from fpcad.look.run import load
 from fpcad.look.serve import LiveView, open_server

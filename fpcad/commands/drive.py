@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from fpcad.console import console
+from fpcad.commands.console import console
 from fpcad.errors import StoreError
 from fpcad.run import report as runs
 from fpcad.run.limits import JointLimits, read_limits
