@@ -58,6 +58,14 @@ class Print(SpecModel):
     """Density of the printed endoskeleton [g/cm^3]; PLA by default."""
     skin_density_g_cm3: Positive = 1.12
     """Density of the printed skin [g/cm^3]; TPE by default."""
+    bed_mm: tuple[Positive, Positive, Positive] = (220.0, 220.0, 240.0)
+    """Room of the printer: width, depth, height [mm]."""
+    bone_wall_mm: Positive = 0.8
+    """Thinnest wall of a rigid part [mm]: two lines of a 0.4 mm nozzle."""
+    skin_wall_mm: Positive = 0.8
+    """Thinnest wall of a skin [mm]."""
+    overhang_deg: Annotated[float, Field(ge=0, lt=90)] = 45.0
+    """Largest angle from the vertical at which a face is printed without support [deg]."""
     mesh_tolerance_mm: Annotated[float, Field(gt=0, le=1)] = 0.05
     """Largest chordal error of the STL files [mm]."""
     mesh_angle_deg: Annotated[float, Field(gt=0, le=45)] = 11.5
