@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 import trimesh
 
 from fpcad.make.bom import bill_of_materials, bom_csv
-from fpcad.make.description import JointDrive, LinkBody, urdf_text
+from fpcad.make.description import LinkBody, describe, write_description
 from fpcad.make.inertia import inertia_of
 from fpcad.make.mesh import check_apart, in_metres, stl_bytes
 from fpcad.make.parts.dimensions import finger_dimensions
 from fpcad.make.parts.part import Part, Progress, make_parts
 from fpcad.make.parts.step import step_bytes
 from fpcad.make.reach import flexion_reach
+from fpcad.make.trajectory import Trajectory
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.geometry import HandGeometry
-from fpcad.model.transmission import (
-    finger_transmission,
-    single_axis_speed_limits,
-    single_axis_torque_limits,
-)
-from fpcad.spec.catalogue import Motor, motor
+from fpcad.spec.catalogue import motor
 from fpcad.spec.schema import Spec
 from fpcad.store import write_whole
 from fpcad.units import DEG_PER_RAD, RAD_PER_DEG
@@ -35,11 +32,16 @@ VISUAL_FOLDER = Path("meshes") / "visual"
 
 
 def make_hand(
-    spec: Spec, geometry: HandGeometry, out: Path, progress: Progress = log.debug
+    spec: Spec,
+    geometry: HandGeometry,
+    out: Path,
+    progress: Progress = log.debug,
+    trajectories: Mapping[str, Trajectory] = MappingProxyType({}),
 ) -> list[Path]:
     """Make a hand's parts and description and write them under `out`, a build's folder.
 
-    `progress` is told each step in a few words. Returns the files written. Raises
+    `progress` is told each step in a few words; the description's postures are the first ones of
+    the trajectories, by pose. Returns the files written. Raises
     :class:`fpcad.errors.MakeError` naming the part that cannot be made.
     """
     row = motor(spec.motors.type)
@@ -56,8 +58,8 @@ def make_hand(
         write_whole(out / "hand" / VISUAL_FOLDER / f"{p.name}.stl", stl_bytes(in_metres(p.mesh)))
         for p in parts
     ]
-    urdf = urdf_text(spec, geometry, link_bodies(spec, parts), joint_drives(spec, row))
-    files.append(write_whole(out / "hand" / "urdf" / f"{spec.name}.urdf", urdf))
+    robot = describe(spec, geometry, link_bodies(spec, parts), trajectories)
+    files += write_description(robot, out / "hand")
     files.append(write_whole(out / "hand" / "transmission.yaml", transmission_yaml(spec)))
     return files
 
@@ -97,20 +99,9 @@ def link_bodies(spec: Spec, parts: Sequence[Part]) -> dict[str, LinkBody]:
         own = [part for part in parts if part.link == link]
         bodies[link] = LinkBody(
             inertia_of((part.mesh, density[part.material]) for part in own),
-            tuple((f"../{VISUAL_FOLDER.as_posix()}/{p.name}.stl", p.material) for p in own),
+            tuple((part.name, part.material) for part in own),
         )
     return bodies
-
-
-def joint_drives(spec: Spec, row: Motor) -> list[JointDrive]:
-    """What the spec's motors give each joint of a finger alone."""
-    A = finger_transmission(spec.motors.transmission)
-    torques = single_axis_torque_limits(A, row.continuous_torque_nm)
-    speeds = single_axis_speed_limits(A, row.no_load_speed_rad_s)
-    return [
-        JointDrive(float(torque), float(speed))
-        for torque, speed in zip(torques, speeds, strict=True)
-    ]
 
 
 def rest_pairs(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from fpcad.errors import MakeError
@@ -56,13 +58,15 @@ def _export_chosen(build: Build) -> int:
     named = np.array([selected["design"][name] for name in space.names])
     design = space.internal(named)
     geometry = hand_geometry(build.bench.template, design)
+    trajectories = {}
     with build.reporter.stage("trajectories", len(build.spec.poses)) as bar:
         for path in read_paths(build, int(selected["id"])).values():
-            trajectory = make_trajectory(build, design, path)
+            trajectories[path.pose] = trajectory = make_trajectory(build, design, path)
             write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json")
             bar.advance(1, f"{path.pose}: {trajectory.duration_s:.1f} s")
     with build.reporter.stage("parts", PART_STEPS) as bar:
-        files = make_hand(build.spec, geometry, build.folder, lambda step: bar.advance(1, step))
+        progress = partial(bar.advance, 1)
+        files = make_hand(build.spec, geometry, build.folder, progress, trajectories)
     return len(files) + len(build.spec.poses)
 
 

@@ -12,8 +12,9 @@ import trimesh
 import yourdfpy
 from scipy.spatial.transform import Rotation
 
-from fpcad.make.description import urdf_text
-from fpcad.make.hand import joint_drives, link_bodies, make_hand
+from fpcad.make.description import describe
+from fpcad.make.description.urdf import urdf_text
+from fpcad.make.hand import link_bodies, make_hand
 from fpcad.make.inertia import inertia_of
 from fpcad.make.primitives import pose_along, roll_pitch_yaw
 from fpcad.model.geometry import link_poses
@@ -68,8 +69,7 @@ def pinocchio_error(text: str, values: tuple[float, ...], joints: np.ndarray) ->
 @pytest.mark.parametrize("values", [CENTRE, *CORNERS, (42.5, 85, 30, 16, 90, 45)], ids=str)
 def test_pinocchio_finds_the_models_links(clay_parts, values):
     bodies = link_bodies(CLAY, list(clay_parts.values()))
-    drives = joint_drives(CLAY, motor(CLAY.motors.type))
-    text = urdf_text(CLAY, geometry_of(values), bodies, drives)
+    text = urdf_text(describe(CLAY, geometry_of(values), bodies, {}))
     for seed in range(5):
         assert pinocchio_error(text, values, random_joints(seed)) <= 1e-9
 
