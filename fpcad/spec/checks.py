@@ -14,6 +14,7 @@ from fpcad.spec.names import check_exact_keys, span
 from fpcad.spec.parts import INTERVAL, PALM_PRIMITIVE, Finding, Parts
 from fpcad.spec.process import Sampling
 from fpcad.spec.templates import TEMPLATES, TemplateNames
+from fpcad.spec.wiring import Wiring
 
 DISTAL_LENGTH = "d1_distal_length_mm"
 WIDEST_JOINT_DEG = (-170.0, 170.0)
@@ -32,6 +33,7 @@ def cross_check(parts: Parts) -> Iterator[Finding]:
         yield from _check_palm(parts, names)
         yield from check_poses(parts, names)
         yield from check_initial(parts, names)
+        yield from _check_wiring(parts, names)
     yield from _check_palm_names(parts)
     yield from _check_sampling(parts)
     yield from _check_motors(parts)
@@ -108,6 +110,23 @@ def _check_motors(parts: Parts) -> Iterator[Finding]:
     motor = parts.get_or(("motors", "type"), str, Motors.model_fields["type"].default)
     if motor is not None and motor not in motor_types():
         yield Finding(("motors", "type"), one_of(motor_types(), motor))
+
+
+def _check_wiring(parts: Parts, names: TemplateNames) -> Iterator[Finding]:
+    root = ("motors", "wiring")
+    wiring = parts.get_or(root, Wiring, Wiring())
+    if wiring is None:
+        return
+    known = True
+    for table in ("ids", "signs", "gear_ratios"):
+        for finger in parts.keys((*root, table)) or ():
+            if finger not in names.fingers:
+                known = False
+                yield _unknown((*root, table, finger), "finger", finger, names.fingers)
+    numbers = wiring.numbers(names.fingers) if known else ()
+    twice = sorted({number for number in numbers if numbers.count(number) > 1})
+    if twice:
+        yield Finding((*root, "ids"), "an id of its own for each motor", f"id {twice[0]} twice")
 
 
 def _unknown(path: KeyPath, what: str, name: str, known: Sequence[str]) -> Finding:

@@ -56,9 +56,9 @@ def quoted(text: str, longest: int = 60) -> str:
     return '"' + "".join(escaped) + '"'
 
 
-def one_of(names: Iterable[str], found: str | None = None) -> str:
+def one_of(names: Iterable[object], found: str | None = None) -> str:
     """`one of a, b, c`, with the name that is nearest to the one found."""
-    known = list(names)
+    known = [str(name) for name in names]  # a list of choices may hold numbers
     words = "one of " + ", ".join(known) if len(known) > 1 else ", ".join(known) or "nothing"
     return words + near_miss(known, found)
 

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from fpcad.spec.base import NonNegative, Positive, SpecModel
 from fpcad.spec.catalogue import motor_types
+from fpcad.spec.wiring import Wiring
 
 
 class Transmission(SpecModel):
@@ -32,6 +33,8 @@ class Motors(SpecModel):
     """Row of the motor catalogue."""
     transmission: Transmission = Transmission()
     """Pulleys and spools."""
+    wiring: Wiring = Wiring()
+    """Ids, signs and gears on the servo bus."""
 
 
 class Motion(SpecModel):
