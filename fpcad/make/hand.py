@@ -14,7 +14,8 @@ from fpcad.make.description import LinkBody, describe, write_description
 from fpcad.make.inertia import inertia_of
 from fpcad.make.mesh import check_apart, in_metres, stl_bytes
 from fpcad.make.parts.dimensions import finger_dimensions
-from fpcad.make.parts.part import Part, Progress, make_parts
+from fpcad.make.parts.assembly import Progress, make_parts
+from fpcad.make.parts.part import Part
 from fpcad.make.parts.step import step_bytes
 from fpcad.make.reach import flexion_reach
 from fpcad.make.trajectory import Trajectory

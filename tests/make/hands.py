@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fpcad.make.parts.part import Part, make_parts
+from fpcad.make.parts.assembly import make_parts
+from fpcad.make.parts.part import Part
 from fpcad.model.geometry import HandGeometry, hand_geometry
 from fpcad.model.hand import hand_template
 from fpcad.spec.load import load_spec

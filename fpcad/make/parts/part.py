@@ -1,59 +1,64 @@
-"""A printed part and the list of them that makes a hand."""
+"""A printed part: its solid, its mesh, and where each copy sits in the hand."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from typing import Literal
 
+import numpy as np
 import trimesh
+from numpy.typing import NDArray
 
-from fpcad.make.mesh import mesh_of
-from fpcad.make.parts.bone import distal_bone, proximal_bone
-from fpcad.make.parts.dimensions import Dimensions, finger_dimensions
-from fpcad.make.parts.mcp import mcp_cross
-from fpcad.make.parts.palm import palm_solid
-from fpcad.make.parts.skin import distal_skin, proximal_skin
 from fpcad.make.parts.solids import Solid
-from fpcad.model.geometry import HandGeometry
-from fpcad.spec.schema import Spec
+
+Array = NDArray[np.float64]
 
 Material = Literal["endoskeleton", "skin"]
+
+FIXED_LINK = "palm"
+"""The one link that is no finger's: palm, flange and motor box are all fixed to it."""
+
+
+def in_place() -> tuple[Array, ...]:
+    """One copy, modelled where it sits."""
+    return (np.eye(4),)
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where one copy of a part or bought item sits."""
+
+    link: str
+    """Link of the URDF: `palm` or `<finger>_<link>`."""
+    T_link_item: Array  # (4, 4) [mm]
+
+
+def placements(link: str, places: Iterable[Array], fingers: Iterable[str]) -> list[Placement]:
+    """Every copy of what sits at `places` on the palm, or on the same link of each finger."""
+    names = [link] if link == FIXED_LINK else [f"{finger}_{link}" for finger in fingers]
+    return [Placement(name, T) for name in names for T in places]
 
 
 @dataclass(frozen=True)
 class Part:
-    """One printed part in the frame of the link that it belongs to."""
+    """One printed part. It is modelled in the frame of its first copy's place."""
 
     name: str
     link: str
-    """`palm`, or the link of every finger that carries a copy: `mcp`, `proximal`, `distal`."""
+    """`palm`, or the link of every finger that carries copies: `mcp`, `proximal`, `distal`."""
     material: Material
     count: int
     """How many of it a hand needs."""
     solid: Solid
     mesh: trimesh.Trimesh
     """[mm], watertight, one body."""
+    places: tuple[Array, ...] = field(default_factory=in_place)
+    """T_link_part (4, 4) [mm] of each copy on one link. What turns on its own about the flexion axis
+    (pulleys, drum) is round, and counts to the link `mcp`."""
+    T_bed_part: Array = field(default_factory=lambda: np.eye(4))
+    """(4, 4) rotation to the proposed print orientation, z up; drop it to z = 0 before slicing."""
 
-
-Progress = Callable[[str], None]
-"""Told what is being made, in a few words."""
-
-
-def make_parts(spec: Spec, geometry: HandGeometry, progress: Progress) -> list[Part]:
-    """All printed parts of a hand; parts that fingers share are made once."""
-    d, fingers = finger_dimensions(spec, geometry), len(geometry.fingers)
-    makers: list[tuple[str, str, Material, int, Callable[[Dimensions], Solid]]] = [
-        ("palm", "palm", "endoskeleton", 1, lambda d: palm_solid(geometry, d)),
-        ("mcp_cross", "mcp", "endoskeleton", fingers, mcp_cross),
-        ("proximal_bone", "proximal", "endoskeleton", fingers, proximal_bone),
-        ("proximal_skin", "proximal", "skin", fingers, proximal_skin),
-        ("distal_bone", "distal", "endoskeleton", fingers, distal_bone),
-        ("distal_skin", "distal", "skin", fingers, distal_skin),
-    ]
-    parts = []
-    for name, link, material, count, make in makers:
-        progress(name)
-        solid = make(d)
-        parts.append(Part(name, link, material, count, solid, mesh_of(name, solid, spec.print)))
-    return parts
+    def placements(self, fingers: Iterable[str]) -> list[Placement]:
+        """Where each copy in the hand sits."""
+        return placements(self.link, self.places, fingers)
