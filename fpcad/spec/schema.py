@@ -7,6 +7,7 @@ from typing import Any, Literal
 from pydantic import Field, field_validator
 
 from fpcad.spec.base import Name, SpecModel, rejection
+from fpcad.spec.grip import Grip
 from fpcad.spec.hand import Hand
 from fpcad.spec.hardware import Motion, Motors, Print
 from fpcad.spec.pose import Initial, Pose
@@ -47,6 +48,8 @@ class Spec(SpecModel):
     """What drives the joints."""
     motion: Motion = Motion()
     """Limits of the exported trajectories."""
+    grip: Grip = Grip()
+    """How tight the exported trajectories hold the tool."""
     print: Print = Print()
     """How the parts are printed."""
 
