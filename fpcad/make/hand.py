@@ -60,7 +60,7 @@ def make_hand(
         for p in parts
     ]
     robot = describe(spec, geometry, link_bodies(spec, parts), trajectories)
-    files += write_description(robot, out / "hand")
+    files += write_description(robot, trajectories, out / "hand")
     files.append(write_whole(out / "hand" / "transmission.yaml", transmission_yaml(spec)))
     return files
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import coal
+import coal  # pyright: ignore[reportMissingImports]
 import numpy as np
-import pinocchio as pin
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

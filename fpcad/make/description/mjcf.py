@@ -32,6 +32,8 @@ ROLLING_FRICTION = (0.005, 0.0001)
 TOOL = "tool"
 TOOL_MASS_KG = 0.02
 """The scene's tool weighs as much as a small stylus; whoever simulates another one changes it."""
+LIGHTS = ((0.3, -0.4, 0.8), (-0.4, 0.3, -0.6))
+"""Where the scene's light comes from."""
 TOOL_COLOUR = (0.73, 0.55, 0.32, 1.0)
 
 
@@ -45,20 +47,36 @@ def hand_mjcf(robot: Robot) -> str:
 
 
 def scene_mjcf(robot: Robot) -> str:
-    """The same hand with light, floor and the free tool; complete in itself."""
+    """The same hand with light and the free tool; complete in itself."""
     root = _model(robot, f"{robot.name} scene")
     ET.SubElement(root, "option", integrator="implicitfast", cone="elliptic", impratio="10")
-    visual = ET.SubElement(root, "visual")
-    ET.SubElement(visual, "global", offwidth="1280", offheight="960")
-    ET.SubElement(root, "statistic", center="0 0 0", extent="0.3")
+    _stage(root)
     world = ET.SubElement(root, "worldbody")
-    ET.SubElement(world, "light", pos="0.3 -0.4 0.8", dir="-0.3 0.4 -0.8", directional="true")
-    ET.SubElement(world, "light", pos="-0.4 0.3 -0.6", dir="0.4 -0.3 0.6", directional="true")
+    for x, y, z in LIGHTS:
+        place, direction = vector_text((x, y, z)), vector_text((-x, -y, -z))
+        ET.SubElement(world, "light", pos=place, dir=direction, directional="true")
     _hand_body(world, robot)
     _tool_body(world, robot.tool)
     _mechanism(root, robot)
     _keyframes(root, robot, with_tool=True)
     return document(root)
+
+
+def _stage(root: ET.Element) -> None:
+    """Background and picture size."""
+    visual = ET.SubElement(root, "visual")
+    ET.SubElement(visual, "global", offwidth="1280", offheight="960")
+    ET.SubElement(root, "statistic", center="0 0 -0.03", extent="0.25")
+    ET.SubElement(
+        ET.SubElement(root, "asset"),
+        "texture",
+        type="skybox",
+        builtin="gradient",
+        rgb1="1 1 1",
+        rgb2="0.8 0.84 0.88",
+        width="64",
+        height="384",
+    )
 
 
 def _model(robot: Robot, name: str) -> ET.Element:

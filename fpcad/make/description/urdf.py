@@ -25,10 +25,10 @@ def urdf_text(robot: Robot) -> str:
     return document(root)
 
 
-def add_materials(parent: ET.Element) -> None:
-    """The printed materials' colours."""
+def add_materials(parent: ET.Element, prefix: str = "") -> None:
+    """The printed materials' colours; `prefix` comes before their names."""
     for material, colour in COLOURS.items():
-        element = ET.SubElement(parent, "material", name=material)
+        element = ET.SubElement(parent, "material", name=prefix + material)
         ET.SubElement(element, "color", rgba=vector_text(colour))
 
 
@@ -49,7 +49,7 @@ def _link(parent: ET.Element, link: Link, mesh_file: MeshFile, prefix: str) -> N
         visual = ET.SubElement(element, "visual")
         geometry = ET.SubElement(visual, "geometry")
         ET.SubElement(geometry, "mesh", filename=mesh_file(mesh))
-        ET.SubElement(visual, "material", name=material)
+        ET.SubElement(visual, "material", name=prefix + material)
     for shape in link.capsules:
         capsule_collision(element, prefix + shape.name, shape.start, shape.end, shape.radius)
 
