@@ -30,8 +30,6 @@ MESHES = "../meshes/visual"
 ROLLING_FRICTION = (0.005, 0.0001)
 """Torsional and rolling friction [m], MuJoCo's defaults; with condim 3 they have no effect."""
 TOOL = "tool"
-TOOL_MASS_KG = 0.02
-"""The scene's tool weighs as much as a small stylus; whoever simulates another one changes it."""
 LIGHTS = ((0.3, -0.4, 0.8), (-0.4, 0.3, -0.6))
 """Where the scene's light comes from."""
 TOOL_COLOUR = (0.73, 0.55, 0.32, 1.0)
@@ -164,11 +162,13 @@ def _tool_body(world: ET.Element, tool: Stick) -> None:
         type="cylinder",
         fromto=vector_text((tool.back, 0.0, 0.0, tool.tip, 0.0, 0.0)),
         size=number(tool.radius),
-        mass=number(TOOL_MASS_KG),
+        mass=number(tool.mass_kg),
         rgba=vector_text(TOOL_COLOUR),
         group="2",
     )
-    ET.SubElement(body, "site", name=f"{TOOL}_tip", pos=vector_text((tool.tip, 0.0, 0.0)))
+    ET.SubElement(
+        body, "site", name=f"{TOOL}_tip", pos=vector_text((tool.tip, 0.0, 0.0)), size="0.001"
+    )
 
 
 def _mechanism(root: ET.Element, robot: Robot) -> None:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fpcad.make.description.servo import Servo, servo_of
 from fpcad.make.inertia import Inertia
 from fpcad.make.primitives import pose_along
+from fpcad.make.servo import Servo, servo_of
 from fpcad.make.trajectory import Trajectory
 from fpcad.model.geometry import HandGeometry
 from fpcad.model.transmission import (
@@ -38,6 +38,7 @@ Paths may rest at the hard limits, so a wider margin would move a finger off the
 """
 STRETCH_RAD = 1.0
 """How far targets of motors may lie beyond what the joints reach; MuJoCo cuts them off there."""
+KG_PER_G = 1e-3
 X, Y, Z = np.eye(3)
 
 
@@ -111,6 +112,7 @@ class Stick:
     radius: float
     back: float
     tip: float
+    mass_kg: float
 
 
 @dataclass(frozen=True)
@@ -170,9 +172,7 @@ def describe(
         servo=servo_of(row),
         friction=spec.statics.friction,
         postures=tuple(_posture(name, trajectories[name]) for name in trajectories),
-        tool=Stick(
-            *(M_PER_MM * x for x in (spec.tool.radius_mm, spec.tool.back_mm, spec.tool.tip_mm))
-        ),
+        tool=_stick(spec),
     )
 
 
@@ -255,3 +255,9 @@ def _posture(name: str, trajectory: Trajectory) -> Posture:
     joints = trajectory.position_rad[0]
     command = joints if preload is None else preload[0]
     return Posture(name, joints, command, trajectory.tool.pose_palm[0])
+
+
+def _stick(spec: Spec) -> Stick:
+    radius, back, tip = spec.tool.radius_mm, spec.tool.back_mm, spec.tool.tip_mm
+    mass = spec.grip.tool_mass_g * KG_PER_G
+    return Stick(radius * M_PER_MM, back * M_PER_MM, tip * M_PER_MM, mass)
