@@ -11,6 +11,7 @@ struct motor_goals {
     int32_t position[MAX_JOINTS]; /* [1e-6 rad] */
     int32_t velocity[MAX_JOINTS]; /* [1e-6 rad/s]; a servo that takes none ignores it */
     bool torque_on;               /* turned on only after the goals have arrived */
+    int16_t current_ma;           /* of each motor at most; 0: as much as it can */
 };
 
 struct motor_readings {

@@ -8,16 +8,53 @@
 #include "telemetry.h"
 #include "transmission.h"
 
+/* Homing touches gently, and a hand that only holds needs less than one that moves. */
+static int16_t largest_current(const struct controller *controller)
+{
+    const struct hand_setup *setup = controller->setup;
+    if (controller->state == STATE_HOMING) {
+        return setup->homing.current_ma;
+    }
+    bool holds = controller->state == STATE_HOLD || controller->state == STATE_FAULT;
+    return holds && controller->follower.rate == 0 ? setup->hold_ma : 0;
+}
+
+static void measure(struct controller *controller)
+{
+    const struct hand_setup *setup = controller->setup;
+    joints_of(
+        &setup->transmission, setup->joints, controller->offset, controller->readings.position,
+        controller->measured);
+}
+
 static void exchange(struct controller *controller)
 {
     const struct hand_setup *setup = controller->setup;
-    struct follower *follower = &controller->follower;
-    struct motor_goals goals = {.torque_on = controller->torque_on};
-    motors_of(&setup->transmission, setup->joints, follower->command, goals.position);
-    motor_rates_of(&setup->transmission, setup->joints, follower->command_velocity, goals.velocity);
+    const struct follower *follower = &controller->follower;
+    struct motor_goals goals = {
+        .torque_on = controller->torque_on, .current_ma = largest_current(controller)};
+    int32_t place[MAX_JOINTS], rate[MAX_JOINTS] = {0};
+    if (controller->state == STATE_HOMING) {
+        memcpy(place, controller->homing.place, sizeof place);
+        rate[controller->homing.moved] = controller->homing.rate;
+    } else {
+        for (uint8_t i = 0; i < setup->joints; i++) {
+            place[i] = follower->command[i] + follower->preload[i];
+            rate[i] = follower->command_velocity[i];
+        }
+    }
+    motors_of(&setup->transmission, setup->joints, controller->offset, place, goals.position);
+    motor_rates_of(&setup->transmission, setup->joints, rate, goals.velocity);
     controller->board->exchange(controller->board->context, &goals, &controller->readings);
-    joints_of(
-        &setup->transmission, setup->joints, controller->readings.position, controller->measured);
+    measure(controller);
+}
+
+void controller_set_zeros(struct controller *controller, const int32_t *offset)
+{
+    memcpy(controller->offset, offset, controller->setup->joints * sizeof *offset);
+    measure(controller);
+    follower_rest_at(&controller->follower, controller->measured);
+    controller->homed = true;
 }
 
 void controller_boot(
@@ -27,6 +64,8 @@ void controller_boot(
     controller->setup = setup;
     controller->board = board;
     controller->follower.setup = setup;
+    controller->follower.offset = controller->offset;
+    memcpy(controller->offset, setup->transmission.offset, sizeof controller->offset);
     controller->watchdog.patience_us = setup->silence_us;
     controller->homed = setup->homed;
     controller->state = setup->homed ? STATE_READY : STATE_IDLE;
@@ -53,9 +92,17 @@ static void supervise(struct controller *controller)
 {
     bool silent = watchdog_barks(&controller->watchdog, controller->time_us);
     uint8_t motors = guard_motors(&controller->guard, controller->setup, &controller->readings);
-    if (motors != CAUSE_NONE && controller->state >= STATE_READY && controller->state <= STATE_HOLD) {
+    if (motors != CAUSE_NONE && controller->state >= STATE_HOMING && controller->state <= STATE_HOLD) {
+        if (controller->state == STATE_HOMING) {
+            command_stop_homing(controller);
+        }
         fault(controller, motors);
         return;
+    }
+    if (controller->state == STATE_HOMING && silent) {
+        command_stop_homing(controller);
+        controller->state = STATE_IDLE;
+        controller->cause = CAUSE_SILENCE;
     }
     if (controller->state == STATE_ARMED && silent) {
         controller->state = STATE_READY;
@@ -64,7 +111,7 @@ static void supervise(struct controller *controller)
         return;
     }
     const struct follower *follower = &controller->follower;
-    if (guard_tracking(controller->setup, controller->measured, follower->command) != CAUSE_NONE) {
+    if (guard_tracking(follower, controller->measured) != CAUSE_NONE) {
         fault(controller, CAUSE_TRACKING);
     } else if (follower_arrived(follower)) {
         controller->state = STATE_READY;
@@ -72,6 +119,36 @@ static void supervise(struct controller *controller)
         command_stop(controller, STATE_HOLD, CAUSE_SILENCE);
     } else if (follower_starving(follower)) {
         command_stop(controller, STATE_HOLD, CAUSE_UNDERRUN);
+    }
+}
+
+/* The zeros found are taken into use all at once, at the end. */
+static void use_homing(struct controller *controller)
+{
+    const struct hand_setup *setup = controller->setup;
+    int32_t shift[MAX_JOINTS], offset[MAX_JOINTS];
+    for (uint8_t i = 0; i < setup->joints; i++) {
+        shift[i] = homing_shift(&controller->homing, setup, i);
+    }
+    motor_rates_of(&setup->transmission, setup->joints, shift, offset);
+    for (uint8_t i = 0; i < setup->joints; i++) {
+        offset[i] = controller->offset[i] - offset[i];
+        controller->homing.lower[i] += shift[i];
+        controller->homing.upper[i] += shift[i];
+    }
+    controller_set_zeros(controller, offset);
+    controller->state = STATE_READY;
+}
+
+static void home(struct controller *controller, int32_t tick_us)
+{
+    homing_step(&controller->homing, controller->setup, controller->measured, tick_us);
+    if (controller->homing.outcome == HOMING_OUTCOME_FOUND) {
+        use_homing(controller);
+    } else if (controller->homing.outcome != HOMING_OUTCOME_SEARCHING) {
+        controller->torque_on = false;
+        follower_rest_at(&controller->follower, controller->measured);
+        fault(controller, CAUSE_HOMING);
     }
 }
 
@@ -85,6 +162,9 @@ void controller_tick(struct controller *controller)
     }
     follower_step(&controller->follower, tick_us);
     exchange(controller);
+    if (controller->state == STATE_HOMING) {
+        home(controller, tick_us);
+    }
     supervise(controller);
     telemetry_send_if_due(controller);
 }

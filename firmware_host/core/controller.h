@@ -6,6 +6,7 @@
 #include "follower.h"
 #include "framing.h"
 #include "guard.h"
+#include "homing.h"
 #include "sequence.h"
 #include "watchdog.h"
 
@@ -18,9 +19,11 @@ struct controller {
     bool homed;
     uint64_t time_us;
     uint64_t start_us;
+    int32_t offset[MAX_JOINTS];   /* the motors' zeros in use */
     int32_t measured[MAX_JOINTS]; /* joints, from the motors' encoders */
     struct motor_readings readings;
     struct follower follower;
+    struct homing homing;
     struct guard guard;
     struct watchdog watchdog;
     struct frame_reader reader;
@@ -34,5 +37,7 @@ void controller_boot(
     struct controller *controller, const struct hand_setup *setup, const struct board *board);
 void controller_receive(struct controller *controller, uint8_t byte);
 void controller_tick(struct controller *controller);
+/* Take motor zeros (joints of them) into use; the goal becomes where the joints are. */
+void controller_set_zeros(struct controller *controller, const int32_t *offset);
 
 #endif

@@ -8,6 +8,7 @@
 #define STARVING_US 200000       /* enough to slow down on */
 #define FASTEST_BRAKING 20       /* loss of rate a second: from full speed to rest in 50 ms */
 #define BRAKING_BITS 16
+#define PRELOAD_STEP 2000         /* a preload that counts as unchanged */
 
 static const struct knot *knot_at(const struct follower *follower, uint16_t place)
 {
@@ -29,7 +30,7 @@ static bool at_rest(const struct knot *knot, uint8_t joints)
     return true;
 }
 
-void follower_rest_at(struct follower *follower, const int32_t *position)
+void follower_forget(struct follower *follower)
 {
     follower->first = follower->queued = 0;
     follower->accepted = 0;
@@ -37,8 +38,28 @@ void follower_rest_at(struct follower *follower, const int32_t *position)
     follower->path = 0;
     follower->rate = 0;
     follower->stopping = follower->ended = false;
-    memmove(follower->command, position, sizeof follower->command);
     memset(follower->command_velocity, 0, sizeof follower->command_velocity);
+}
+
+void follower_rest_at(struct follower *follower, const int32_t *position)
+{
+    follower_forget(follower);
+    memmove(follower->command, position, sizeof follower->command);
+    memset(follower->preload, 0, sizeof follower->preload);
+}
+
+/* Distance of `value` from the stretch between 0 and `preload`. */
+static int64_t beyond_preload(int64_t value, int32_t preload)
+{
+    int64_t lower = preload < 0 ? preload : 0, upper = preload < 0 ? 0 : preload;
+    return value < lower ? lower - value : value > upper ? value - upper : 0;
+}
+
+int32_t follower_error(const struct follower *follower, uint8_t joint, int32_t measured)
+{
+    int64_t ahead = (int64_t)measured - follower->command[joint];
+    int64_t error = beyond_preload(ahead, follower->preload[joint]);
+    return error > INT32_MAX ? INT32_MAX : (int32_t)error;
 }
 
 int64_t follower_path_us(const struct follower *follower)
@@ -69,6 +90,25 @@ bool follower_arrived(const struct follower *follower)
     return follower->ended && follower_queued_us(follower) <= 0;
 }
 
+static int32_t preload_of(const struct knot *knot, uint8_t joint)
+{
+    return (int32_t)knot->preload_20urad[joint] * PRELOAD_URAD;
+}
+
+/* Whether the preload keeps to its bound and comes no faster than `change` from where it was. */
+static struct violation preload_refusal(
+    const struct follower *follower, const struct knot *knot, const int32_t *before, int64_t change)
+{
+    for (uint8_t i = 0; i < follower->setup->joints; i++) {
+        int64_t step = (int64_t)preload_of(knot, i) - before[i];
+        if (magnitude(preload_of(knot, i)) > follower->setup->preload.limit || step > change ||
+            step < -change) {
+            return (struct violation){REASON_PRELOAD_LIMIT, i};
+        }
+    }
+    return (struct violation){0, 0};
+}
+
 static struct violation first_refusal(
     const struct follower *follower, const struct knot *knot, const int32_t *present)
 {
@@ -81,8 +121,8 @@ static struct violation first_refusal(
         return (struct violation){REASON_NOT_AT_REST, 0};
     }
     for (uint8_t i = 0; i < joints; i++) {
-        int64_t distance = (int64_t)knot->position_urad[i] - present[i];
-        distance = distance < 0 ? -distance : distance;
+        int64_t ahead = (int64_t)present[i] - knot->position_urad[i];
+        int64_t distance = beyond_preload(ahead, follower->preload[i]);
         if (distance > farthest) {
             farthest = distance;
             worst = i;
@@ -91,7 +131,8 @@ static struct violation first_refusal(
     if (farthest > START_DISTANCE) {
         return (struct violation){REASON_TOO_FAR_FROM_START, worst};
     }
-    return (struct violation){0, 0};
+    /* A grip that is held may go on, but it must not jump. */
+    return preload_refusal(follower, knot, follower->preload, PRELOAD_STEP);
 }
 
 static struct violation next_refusal(const struct follower *follower, const struct knot *knot)
@@ -103,7 +144,17 @@ static struct violation next_refusal(const struct follower *follower, const stru
     if (knot->t_us <= (uint64_t)follower_path_us(follower)) {
         return (struct violation){REASON_LATE, 0};
     }
-    return segment_violation(last, knot, follower->setup->joints, &follower->setup->limits);
+    struct violation found = segment_violation(last, knot, follower->setup, follower->offset);
+    if (found.reason != 0) {
+        return found;
+    }
+    int32_t before[MAX_JOINTS];
+    for (uint8_t i = 0; i < follower->setup->joints; i++) {
+        before[i] = preload_of(last, i);
+    }
+    /* The segment's time is checked by now, so that this fits. */
+    int64_t change = (int64_t)(knot->t_us - last->t_us) * follower->setup->preload.rate / US_PER_S;
+    return preload_refusal(follower, knot, before, change + PRELOAD_URAD);
 }
 
 struct violation follower_offer(
@@ -193,6 +244,19 @@ static void sample(struct follower *follower, struct motion *motion)
     }
 }
 
+/* Preload goes straight from knot to knot, and stays where the path is used up. */
+static void follow_preload(struct follower *follower)
+{
+    const struct knot *from = knot_at(follower, 0), *to = knot_at(follower, 1);
+    int64_t elapsed = (follower->path >> 16) - (int64_t)from->t_us;
+    elapsed = elapsed > follower->span.us ? follower->span.us : elapsed;
+    for (uint8_t i = 0; i < follower->setup->joints; i++) {
+        int32_t start = preload_of(from, i);
+        int64_t way = preload_of(to, i) - start;
+        follower->preload[i] = start + (int32_t)(way * elapsed / follower->span.us);
+    }
+}
+
 static int32_t times_rate(int32_t value, int32_t rate)
 {
     return (int32_t)((int64_t)value * rate >> 30);
@@ -237,6 +301,7 @@ void follower_step(struct follower *follower, int32_t dt_us)
         follower->command[i] = motions[i].position;
         follower->command_velocity[i] = times_rate(motions[i].velocity, rate);
     }
+    follow_preload(follower);
     if (follower_arrived(follower)) {
         follower->rate = 0;
     }

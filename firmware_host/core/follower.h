@@ -17,6 +17,7 @@
 
 struct follower {
     const struct hand_setup *setup;
+    const int32_t *offset; /* the motors' zeros in use */
     struct knot queue[QUEUE_KNOTS];
     uint16_t first;
     uint16_t queued;
@@ -29,10 +30,16 @@ struct follower {
     bool ended;
     int32_t command[MAX_JOINTS];
     int32_t command_velocity[MAX_JOINTS];
+    int32_t preload[MAX_JOINTS]; /* goals lie so far beyond the command */
 };
 
-/* Forget all knots; the command becomes `position` at rest. */
+/* Forget all knots; the command becomes `position` at rest, without preload. */
 void follower_rest_at(struct follower *follower, const int32_t *position);
+/* Forget all knots; command and preload stay as they are. */
+void follower_forget(struct follower *follower);
+/* How far a joint is from where it may be, given the preload: it may stand anywhere between its
+   command and the goal beyond it. */
+int32_t follower_error(const struct follower *follower, uint8_t joint, int32_t measured);
 /* Take a knot, or say why not; `present` is where the joints are. */
 struct violation follower_offer(
     struct follower *follower, const struct knot *knot, const int32_t *present);

@@ -1,7 +1,5 @@
 #include "guard.h"
 
-#include "fixed.h"
-
 /* Whether a condition has lasted; counts how long. */
 static bool lasts(bool condition, uint8_t *ticks)
 {
@@ -34,11 +32,10 @@ uint8_t guard_motors(
     return cause;
 }
 
-uint8_t guard_tracking(
-    const struct hand_setup *setup, const int32_t *measured, const int32_t *command)
+uint8_t guard_tracking(const struct follower *follower, const int32_t *measured)
 {
-    for (uint8_t i = 0; i < setup->joints; i++) {
-        if (magnitude(measured[i] - command[i]) > setup->tracking_error) {
+    for (uint8_t i = 0; i < follower->setup->joints; i++) {
+        if (follower_error(follower, i, measured[i]) > follower->setup->tracking_error) {
             return CAUSE_TRACKING;
         }
     }

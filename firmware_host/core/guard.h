@@ -3,7 +3,7 @@
 #define GUARD_H
 
 #include "board.h"
-#include "hand_setup.h"
+#include "follower.h"
 
 /* Ticks in a row that a fault must last, so that one bad reading stops nothing. */
 #define GUARD_TICKS 2
@@ -17,7 +17,6 @@ struct guard {
 /* A cause of FAULT, or CAUSE_NONE. */
 uint8_t guard_motors(
     struct guard *guard, const struct hand_setup *setup, const struct motor_readings *readings);
-uint8_t guard_tracking(
-    const struct hand_setup *setup, const int32_t *measured, const int32_t *command);
+uint8_t guard_tracking(const struct follower *follower, const int32_t *measured);
 
 #endif

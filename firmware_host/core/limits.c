@@ -1,98 +1,16 @@
 #include "limits.h"
 
-#include <stdbool.h>
-
+#include "bernstein.h"
 #include "fixed.h"
 #include "quintic.h"
+#include "transmission.h"
 
-/* A polynomial lies in the hull of its Bernstein coefficients. Halving it brings the hull towards
-   it, four times closer a step, so that this many leave less than a count in doubt. */
-#define MAX_HALVINGS 14
-
-struct bernstein {
-    uint8_t degree;
-    uint8_t halvings;
-    int64_t at[6];
-};
-
-struct bounds {
-    int64_t lower;
-    int64_t upper;
-};
-
-static bool outside(int64_t value, const struct bounds *bounds)
-{
-    return value < bounds->lower || value > bounds->upper;
-}
-
-static bool hull_inside(const struct bernstein *curve, const struct bounds *bounds)
-{
-    for (uint8_t i = 0; i <= curve->degree; i++) {
-        if (outside(curve->at[i], bounds)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* De Casteljau at one half: `curve` becomes its first half, `second` the rest. */
-static void halve(struct bernstein *curve, struct bernstein *second)
-{
-    curve->halvings++;
-    *second = *curve;
-    for (uint8_t round = 1; round <= curve->degree; round++) {
-        for (uint8_t i = curve->degree; i >= round; i--) {
-            curve->at[i] = (curve->at[i - 1] + curve->at[i]) >> 1;
-        }
-        second->at[curve->degree - round] = curve->at[curve->degree];
-    }
-}
-
-/* Depth first over halves with a stack of its own: no recursion, bounded memory and time. */
-static bool inside(const struct bernstein *whole, const struct bounds *bounds)
-{
-    struct bernstein waiting[MAX_HALVINGS + 1];
-    uint8_t count = 1;
-    waiting[0] = *whole;
-    while (count > 0) {
-        struct bernstein *top = &waiting[count - 1];
-        if (hull_inside(top, bounds)) {
-            count--;
-        } else if (
-            outside(top->at[0], bounds) || outside(top->at[top->degree], bounds) ||
-            top->halvings == MAX_HALVINGS) {
-            return false;
-        } else {
-            halve(top, &waiting[count]);
-            count++;
-        }
-    }
-    return true;
-}
-
-static void position_curve(const struct hermite *ends, struct bernstein *out)
-{
-    const int64_t *p = ends->position, *v = ends->velocity, *a = ends->acceleration;
-    *out = (struct bernstein){
-        .degree = 5,
-        .at = {p[0], p[0] + v[0] / 5, p[0] + 2 * v[0] / 5 + a[0] / 20,
-               p[1] - 2 * v[1] / 5 + a[1] / 20, p[1] - v[1] / 5, p[1]},
-    };
-}
-
-/* The derivative by s. */
-static void differentiate(struct bernstein *curve)
-{
-    for (uint8_t i = 0; i < curve->degree; i++) {
-        curve->at[i] = curve->degree * (curve->at[i + 1] - curve->at[i]);
-    }
-    curve->degree--;
-}
+#define ORDERS 3 /* position, velocity, acceleration */
 
 /* Limits as seen in derivatives by s, widened by what rounding knots to counts can do: half a count
    at both ends of each number times the largest basis functions' derivatives. */
 struct slack {
-    int64_t of_order[3];
+    int64_t of_order[ORDERS];
 };
 
 static struct slack slack_of(const struct span *span)
@@ -103,12 +21,12 @@ static struct slack slack_of(const struct span *span)
 }
 
 static struct bounds bounds_of(
-    uint8_t order, uint8_t joint, const struct span *span, const struct joint_limits *limits)
+    uint8_t order, uint8_t place, const struct span *span, const struct joint_limits *limits)
 {
     if (order == 0) {
-        return (struct bounds){to_fine(limits->lower[joint]), to_fine(limits->upper[joint])};
+        return (struct bounds){to_fine(limits->lower[place]), to_fine(limits->upper[place])};
     }
-    int64_t limit = to_fine(order == 1 ? limits->velocity[joint] : limits->acceleration[joint]);
+    int64_t limit = to_fine(order == 1 ? limits->velocity[place] : limits->acceleration[place]);
     limit = span_times(span, limit);
     if (order == 2) {
         limit = span_times(span, limit);
@@ -116,43 +34,89 @@ static struct bounds bounds_of(
     return (struct bounds){-limit, limit};
 }
 
-/* The first order in which a joint leaves its limits: position, velocity, acceleration, none. */
+/* The first order in which a curve leaves its limits, or ORDERS. */
 static uint8_t first_order_outside(
-    const struct hermite *ends, uint8_t joint, const struct span *span, const struct slack *slack,
+    struct bernstein curve, uint8_t place, const struct span *span, const struct slack *slack,
     const struct joint_limits *limits)
 {
-    struct bernstein curve;
-    position_curve(ends, &curve);
-    for (uint8_t order = 0; order < 3; order++) {
-        struct bounds bounds = bounds_of(order, joint, span, limits);
+    for (uint8_t order = 0; order < ORDERS; order++) {
+        struct bounds bounds = bounds_of(order, place, span, limits);
         bounds.lower -= slack->of_order[order];
         bounds.upper += slack->of_order[order];
-        if (!inside(&curve, &bounds)) {
+        if (!bernstein_inside(&curve, &bounds)) {
             return order;
         }
-        differentiate(&curve);
+        bernstein_differentiate(&curve);
     }
-    return 3;
+    return ORDERS;
+}
+
+/* What a motor does while its finger's joints follow their curves. */
+static struct bernstein motor_curve(
+    const struct bernstein *joints, uint8_t motor, const struct transmission *transmission,
+    int32_t offset)
+{
+    uint8_t group = transmission->group;
+    struct bernstein curve = {.degree = 5};
+    for (uint8_t i = 0; i <= curve.degree; i++) {
+        curve.at[i] = to_fine(offset);
+        for (uint8_t k = 0; k < group; k++) {
+            curve.at[i] += times_gain(joints[motor / group * group + k].at[i], transmission->gain[motor][k]);
+        }
+    }
+    return curve;
+}
+
+/* A count in each joint, as the motor sees them together. */
+static struct slack motor_slack(
+    const struct slack *slack, uint8_t motor, const struct transmission *transmission)
+{
+    int32_t sum = 0;
+    for (uint8_t k = 0; k < transmission->group; k++) {
+        sum += magnitude(transmission->gain[motor][k]);
+    }
+    struct slack result;
+    for (uint8_t order = 0; order < ORDERS; order++) {
+        result.of_order[order] = slack->of_order[order] + times_gain(slack->of_order[order], sum);
+    }
+    return result;
+}
+
+static struct violation worse(
+    struct violation found, uint8_t order, uint8_t first_reason, uint8_t place)
+{
+    uint8_t reason = (uint8_t)(first_reason + order);
+    if (order == ORDERS || (found.reason != 0 && found.reason <= reason)) {
+        return found;
+    }
+    return (struct violation){reason, place};
 }
 
 struct violation segment_violation(
-    const struct knot *from, const struct knot *to, uint8_t joints,
-    const struct joint_limits *limits)
+    const struct knot *from, const struct knot *to, const struct hand_setup *setup,
+    const int32_t *offset)
 {
     if (to->t_us - from->t_us < SHORTEST_SEGMENT_US || to->t_us - from->t_us > LONGEST_SEGMENT_US) {
         return (struct violation){REASON_SEGMENT_TIME, 0};
     }
     struct span span = span_of((int32_t)(to->t_us - from->t_us));
     struct slack slack = slack_of(&span);
-    uint8_t worst = 3, culprit = 0;
-    for (uint8_t joint = 0; joint < joints; joint++) {
+    struct bernstein curves[MAX_JOINTS];
+    struct violation found = {0, 0};
+    for (uint8_t joint = 0; joint < setup->joints; joint++) {
         struct hermite ends;
         hermite_of(from, to, joint, &span, &ends);
-        uint8_t order = first_order_outside(&ends, joint, &span, &slack, limits);
-        if (order < worst) {
-            worst = order;
-            culprit = joint;
-        }
+        bernstein_of(&ends, &curves[joint]);
+        uint8_t order = first_order_outside(curves[joint], joint, &span, &slack, &setup->limits);
+        found = worse(found, order, REASON_POSITION_LIMIT, joint);
     }
-    return (struct violation){worst < 3 ? (uint8_t)(REASON_POSITION_LIMIT + worst) : 0, culprit};
+    bool beyond_joints = found.reason != 0;
+    /* Beyond the joints' limits a motor's curve says nothing, and could leave 64 bits. */
+    for (uint8_t motor = 0; motor < setup->joints && !beyond_joints; motor++) {
+        struct bernstein curve = motor_curve(curves, motor, &setup->transmission, offset[motor]);
+        struct slack own = motor_slack(&slack, motor, &setup->transmission);
+        uint8_t order = first_order_outside(curve, motor, &span, &own, &setup->motor_limits);
+        found = worse(found, order, REASON_MOTOR_POSITION_LIMIT, motor);
+    }
+    return found;
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "crc32.h"
 
 static bool moving(const struct controller *controller)
 {
@@ -74,6 +75,29 @@ static void send_limits(struct controller *controller)
     link_send(controller, MESSAGE_LIMITS, controller->session, payload, length);
 }
 
+/* CRC-32 of the zeros in use, as the host would send them; 0 while none are known. */
+static uint32_t zeros_check(const struct controller *controller)
+{
+    struct calibrate zeros;
+    uint8_t payload[MAX_PAYLOAD];
+    memcpy(zeros.offset_urad, controller->offset, sizeof zeros.offset_urad);
+    uint8_t length = encode_calibrate(&zeros, controller->setup->joints, payload);
+    return controller->homed ? crc32(payload, length) : 0;
+}
+
+static void send_homing(struct controller *controller)
+{
+    const struct homing *own = &controller->homing;
+    struct homing_report report = {.outcome = own->outcome, .joint = own->culprit};
+    uint8_t found = homing_found(own, controller->setup);
+    memcpy(report.offset_urad, controller->offset, sizeof report.offset_urad);
+    memcpy(report.lower_urad, own->lower, found * sizeof *own->lower);
+    memcpy(report.upper_urad, own->upper, found * sizeof *own->upper);
+    uint8_t payload[MAX_PAYLOAD];
+    uint8_t length = encode_homing_report(&report, controller->setup->joints, payload);
+    link_send(controller, MESSAGE_HOMING_REPORT, controller->session, payload, length);
+}
+
 static void take_hello(struct controller *controller, uint16_t session)
 {
     const struct hand_setup *setup = controller->setup;
@@ -95,6 +119,8 @@ static void take_hello(struct controller *controller, uint16_t session)
         .buffer_knots = setup->buffer_knots,
         .boot_nonce = setup->boot_nonce,
         .configuration = setup->configuration,
+        .homed = controller->homed,
+        .calibration = zeros_check(controller),
     };
     memcpy(welcome.build, setup->build, sizeof welcome.build);
     uint8_t payload[MAX_PAYLOAD];
@@ -150,15 +176,17 @@ static void take_bare(struct controller *controller, const struct frame *frame)
     } else if (frame->kind == MESSAGE_HOLD) {
         command_hold(controller);
         send_ack(controller, controller->session);
-    } else {
+    } else if (frame->kind == MESSAGE_ASK_LIMITS) {
         send_limits(controller);
+    } else {
+        send_homing(controller);
     }
 }
 
 static bool is_command(uint8_t kind)
 {
-    return (kind >= MESSAGE_HELLO && kind <= MESSAGE_ESTOP) ||
-           (kind >= MESSAGE_ARM && kind <= MESSAGE_CLEAR);
+    return (kind >= MESSAGE_HELLO && kind <= MESSAGE_ASK_HOMING) ||
+           (kind >= MESSAGE_ARM && kind <= MESSAGE_CALIBRATE);
 }
 
 void link_take(struct controller *controller, const struct frame *frame)

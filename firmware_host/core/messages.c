@@ -108,6 +108,27 @@ bool decode_estop(const uint8_t *payload, uint8_t length, uint8_t *joints, struc
     return true;
 }
 
+uint8_t encode_ask_homing(const struct ask_homing *in, uint8_t joints, uint8_t *payload)
+{
+    uint8_t *at = payload;
+    (void)joints;
+    (void)in;
+    return (uint8_t)(at - payload);
+}
+
+bool decode_ask_homing(const uint8_t *payload, uint8_t length, uint8_t *joints, struct ask_homing *out)
+{
+    const uint8_t *at = payload;
+    int16_t rest = (int16_t)(length - 0);
+    if (rest) {
+        return false;
+    }
+    *joints = 0;
+    (void)out;
+    (void)at;
+    return true;
+}
+
 uint8_t encode_arm(const struct arm *in, uint8_t joints, uint8_t *payload)
 {
     uint8_t *at = payload;
@@ -142,6 +163,9 @@ uint8_t encode_knot(const struct knot *in, uint8_t joints, uint8_t *payload)
     for (uint8_t i = 0; i < joints; i++) {
         at = put_u32(at, (uint32_t)in->acceleration_urad_s2[i]);
     }
+    for (uint8_t i = 0; i < joints; i++) {
+        at = put_u16(at, (uint16_t)in->preload_20urad[i]);
+    }
     return (uint8_t)(at - payload);
 }
 
@@ -149,10 +173,10 @@ bool decode_knot(const uint8_t *payload, uint8_t length, uint8_t *joints, struct
 {
     const uint8_t *at = payload;
     int16_t rest = (int16_t)(length - 8);
-    if (rest < 0 || rest % 12 || rest / 12 > MAX_JOINTS) {
+    if (rest < 0 || rest % 14 || rest / 14 > MAX_JOINTS) {
         return false;
     }
-    *joints = (uint8_t)(rest / 12);
+    *joints = (uint8_t)(rest / 14);
     out->t_us = (uint64_t)get_u64(at); at += 8;
     for (uint8_t i = 0; i < *joints; i++) {
         out->position_urad[i] = (int32_t)get_u32(at); at += 4;
@@ -162,6 +186,9 @@ bool decode_knot(const uint8_t *payload, uint8_t length, uint8_t *joints, struct
     }
     for (uint8_t i = 0; i < *joints; i++) {
         out->acceleration_urad_s2[i] = (int32_t)get_u32(at); at += 4;
+    }
+    for (uint8_t i = 0; i < *joints; i++) {
+        out->preload_20urad[i] = (int16_t)get_u16(at); at += 2;
     }
     (void)at;
     return true;
@@ -230,6 +257,52 @@ bool decode_clear(const uint8_t *payload, uint8_t length, uint8_t *joints, struc
     return true;
 }
 
+uint8_t encode_home(const struct home *in, uint8_t joints, uint8_t *payload)
+{
+    uint8_t *at = payload;
+    (void)joints;
+    (void)in;
+    return (uint8_t)(at - payload);
+}
+
+bool decode_home(const uint8_t *payload, uint8_t length, uint8_t *joints, struct home *out)
+{
+    const uint8_t *at = payload;
+    int16_t rest = (int16_t)(length - 0);
+    if (rest) {
+        return false;
+    }
+    *joints = 0;
+    (void)out;
+    (void)at;
+    return true;
+}
+
+uint8_t encode_calibrate(const struct calibrate *in, uint8_t joints, uint8_t *payload)
+{
+    uint8_t *at = payload;
+    for (uint8_t i = 0; i < joints; i++) {
+        at = put_u32(at, (uint32_t)in->offset_urad[i]);
+    }
+    (void)in;
+    return (uint8_t)(at - payload);
+}
+
+bool decode_calibrate(const uint8_t *payload, uint8_t length, uint8_t *joints, struct calibrate *out)
+{
+    const uint8_t *at = payload;
+    int16_t rest = (int16_t)(length - 0);
+    if (rest < 0 || rest % 4 || rest / 4 > MAX_JOINTS) {
+        return false;
+    }
+    *joints = (uint8_t)(rest / 4);
+    for (uint8_t i = 0; i < *joints; i++) {
+        out->offset_urad[i] = (int32_t)get_u32(at); at += 4;
+    }
+    (void)at;
+    return true;
+}
+
 uint8_t encode_welcome(const struct welcome *in, uint8_t joints, uint8_t *payload)
 {
     uint8_t *at = payload;
@@ -241,6 +314,8 @@ uint8_t encode_welcome(const struct welcome *in, uint8_t joints, uint8_t *payloa
     at = put_u16(at, (uint16_t)in->buffer_knots);
     at = put_u32(at, (uint32_t)in->boot_nonce);
     at = put_u64(at, (uint64_t)in->configuration);
+    at = put_u8(at, (uint8_t)in->homed);
+    at = put_u32(at, (uint32_t)in->calibration);
     at = put_bytes(at, in->build, 16);
     (void)joints;
     return (uint8_t)(at - payload);
@@ -249,7 +324,7 @@ uint8_t encode_welcome(const struct welcome *in, uint8_t joints, uint8_t *payloa
 bool decode_welcome(const uint8_t *payload, uint8_t length, uint8_t *joints, struct welcome *out)
 {
     const uint8_t *at = payload;
-    int16_t rest = (int16_t)(length - 36);
+    int16_t rest = (int16_t)(length - 41);
     if (rest) {
         return false;
     }
@@ -262,6 +337,8 @@ bool decode_welcome(const uint8_t *payload, uint8_t length, uint8_t *joints, str
     out->buffer_knots = (uint16_t)get_u16(at); at += 2;
     out->boot_nonce = (uint32_t)get_u32(at); at += 4;
     out->configuration = (uint64_t)get_u64(at); at += 8;
+    out->homed = (uint8_t)get_u8(at); at += 1;
+    out->calibration = (uint32_t)get_u32(at); at += 4;
     at = get_bytes(at, out->build, 16);
     (void)at;
     return true;
@@ -486,6 +563,9 @@ uint8_t encode_health(const struct health *in, uint8_t joints, uint8_t *payload)
     for (uint8_t i = 0; i < joints; i++) {
         at = put_u8(at, (uint8_t)in->temperature_c[i]);
     }
+    for (uint8_t i = 0; i < joints; i++) {
+        at = put_u16(at, (uint16_t)in->preload_20urad[i]);
+    }
     return (uint8_t)(at - payload);
 }
 
@@ -493,10 +573,10 @@ bool decode_health(const uint8_t *payload, uint8_t length, uint8_t *joints, stru
 {
     const uint8_t *at = payload;
     int16_t rest = (int16_t)(length - 10);
-    if (rest < 0 || rest % 3 || rest / 3 > MAX_JOINTS) {
+    if (rest < 0 || rest % 5 || rest / 5 > MAX_JOINTS) {
         return false;
     }
-    *joints = (uint8_t)(rest / 3);
+    *joints = (uint8_t)(rest / 5);
     out->device_us = (uint64_t)get_u64(at); at += 8;
     out->gaps = (uint16_t)get_u16(at); at += 2;
     for (uint8_t i = 0; i < *joints; i++) {
@@ -504,6 +584,49 @@ bool decode_health(const uint8_t *payload, uint8_t length, uint8_t *joints, stru
     }
     for (uint8_t i = 0; i < *joints; i++) {
         out->temperature_c[i] = (int8_t)get_u8(at); at += 1;
+    }
+    for (uint8_t i = 0; i < *joints; i++) {
+        out->preload_20urad[i] = (int16_t)get_u16(at); at += 2;
+    }
+    (void)at;
+    return true;
+}
+
+uint8_t encode_homing_report(const struct homing_report *in, uint8_t joints, uint8_t *payload)
+{
+    uint8_t *at = payload;
+    at = put_u8(at, (uint8_t)in->outcome);
+    at = put_u8(at, (uint8_t)in->joint);
+    for (uint8_t i = 0; i < joints; i++) {
+        at = put_u32(at, (uint32_t)in->offset_urad[i]);
+    }
+    for (uint8_t i = 0; i < joints; i++) {
+        at = put_u32(at, (uint32_t)in->lower_urad[i]);
+    }
+    for (uint8_t i = 0; i < joints; i++) {
+        at = put_u32(at, (uint32_t)in->upper_urad[i]);
+    }
+    return (uint8_t)(at - payload);
+}
+
+bool decode_homing_report(const uint8_t *payload, uint8_t length, uint8_t *joints, struct homing_report *out)
+{
+    const uint8_t *at = payload;
+    int16_t rest = (int16_t)(length - 2);
+    if (rest < 0 || rest % 12 || rest / 12 > MAX_JOINTS) {
+        return false;
+    }
+    *joints = (uint8_t)(rest / 12);
+    out->outcome = (uint8_t)get_u8(at); at += 1;
+    out->joint = (uint8_t)get_u8(at); at += 1;
+    for (uint8_t i = 0; i < *joints; i++) {
+        out->offset_urad[i] = (int32_t)get_u32(at); at += 4;
+    }
+    for (uint8_t i = 0; i < *joints; i++) {
+        out->lower_urad[i] = (int32_t)get_u32(at); at += 4;
+    }
+    for (uint8_t i = 0; i < *joints; i++) {
+        out->upper_urad[i] = (int32_t)get_u32(at); at += 4;
     }
     (void)at;
     return true;

@@ -5,9 +5,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define PROTOCOL_VERSION 1
+#define PROTOCOL_VERSION 2
 #define MAX_PAYLOAD 200
 #define MAX_JOINTS 12
+#define PRELOAD_URAD 20
 
 enum message {
     MESSAGE_HELLO = 0x01,
@@ -15,11 +16,14 @@ enum message {
     MESSAGE_PING = 0x03,
     MESSAGE_HOLD = 0x04,
     MESSAGE_ESTOP = 0x05,
+    MESSAGE_ASK_HOMING = 0x06,
     MESSAGE_ARM = 0x10,
     MESSAGE_KNOT = 0x11,
     MESSAGE_START = 0x12,
     MESSAGE_END = 0x13,
     MESSAGE_CLEAR = 0x14,
+    MESSAGE_HOME = 0x15,
+    MESSAGE_CALIBRATE = 0x16,
     MESSAGE_WELCOME = 0x40,
     MESSAGE_LIMITS = 0x41,
     MESSAGE_PONG = 0x42,
@@ -29,6 +33,7 @@ enum message {
     MESSAGE_NO_SESSION = 0x46,
     MESSAGE_TELEMETRY = 0x47,
     MESSAGE_HEALTH = 0x48,
+    MESSAGE_HOMING_REPORT = 0x49,
 };
 
 enum state {
@@ -53,6 +58,18 @@ enum cause {
     CAUSE_TEMPERATURE = 6,
     CAUSE_MOTOR_LOST = 7,
     CAUSE_SWITCH = 8,
+    CAUSE_HOMING = 9,
+};
+
+enum homing_outcome {
+    HOMING_OUTCOME_NEVER = 0,
+    HOMING_OUTCOME_SEARCHING = 1,
+    HOMING_OUTCOME_FOUND = 2,
+    HOMING_OUTCOME_NO_END = 3,
+    HOMING_OUTCOME_WRONG_RANGE = 4,
+    HOMING_OUTCOME_WRONG_SIGN = 5,
+    HOMING_OUTCOME_STOPPED = 6,
+    HOMING_OUTCOME_CALIBRATED = 7,
 };
 
 enum reason {
@@ -71,6 +88,11 @@ enum reason {
     REASON_KNOT_COUNT = 13,
     REASON_STILL_MOVING = 14,
     REASON_SEGMENT_TIME = 15,
+    REASON_PRELOAD_LIMIT = 16,
+    REASON_MOTOR_POSITION_LIMIT = 17,
+    REASON_MOTOR_VELOCITY_LIMIT = 18,
+    REASON_MOTOR_ACCELERATION_LIMIT = 19,
+    REASON_IMPLAUSIBLE = 20,
 };
 
 struct hello {
@@ -93,6 +115,10 @@ struct estop {
     uint8_t nothing;
 };
 
+struct ask_homing {
+    uint8_t nothing;
+};
+
 struct arm {
     uint8_t nothing;
 };
@@ -102,6 +128,7 @@ struct knot {
     int32_t position_urad[MAX_JOINTS];
     int32_t velocity_urad_s[MAX_JOINTS];
     int32_t acceleration_urad_s2[MAX_JOINTS];
+    int16_t preload_20urad[MAX_JOINTS];
 };
 
 struct start {
@@ -116,6 +143,14 @@ struct clear {
     uint8_t nothing;
 };
 
+struct home {
+    uint8_t nothing;
+};
+
+struct calibrate {
+    int32_t offset_urad[MAX_JOINTS];
+};
+
 struct welcome {
     uint8_t protocol;
     uint8_t joints;
@@ -125,6 +160,8 @@ struct welcome {
     uint16_t buffer_knots;
     uint32_t boot_nonce;
     uint64_t configuration;
+    uint8_t homed;
+    uint32_t calibration;
     uint8_t build[16];
 };
 
@@ -180,6 +217,15 @@ struct health {
     uint16_t gaps;
     int16_t current_ma[MAX_JOINTS];
     int8_t temperature_c[MAX_JOINTS];
+    int16_t preload_20urad[MAX_JOINTS];
+};
+
+struct homing_report {
+    uint8_t outcome;
+    uint8_t joint;
+    int32_t offset_urad[MAX_JOINTS];
+    int32_t lower_urad[MAX_JOINTS];
+    int32_t upper_urad[MAX_JOINTS];
 };
 
 uint8_t encode_hello(const struct hello *in, uint8_t joints, uint8_t *payload);
@@ -192,6 +238,8 @@ uint8_t encode_hold(const struct hold *in, uint8_t joints, uint8_t *payload);
 bool decode_hold(const uint8_t *payload, uint8_t length, uint8_t *joints, struct hold *out);
 uint8_t encode_estop(const struct estop *in, uint8_t joints, uint8_t *payload);
 bool decode_estop(const uint8_t *payload, uint8_t length, uint8_t *joints, struct estop *out);
+uint8_t encode_ask_homing(const struct ask_homing *in, uint8_t joints, uint8_t *payload);
+bool decode_ask_homing(const uint8_t *payload, uint8_t length, uint8_t *joints, struct ask_homing *out);
 uint8_t encode_arm(const struct arm *in, uint8_t joints, uint8_t *payload);
 bool decode_arm(const uint8_t *payload, uint8_t length, uint8_t *joints, struct arm *out);
 uint8_t encode_knot(const struct knot *in, uint8_t joints, uint8_t *payload);
@@ -202,6 +250,10 @@ uint8_t encode_end(const struct end *in, uint8_t joints, uint8_t *payload);
 bool decode_end(const uint8_t *payload, uint8_t length, uint8_t *joints, struct end *out);
 uint8_t encode_clear(const struct clear *in, uint8_t joints, uint8_t *payload);
 bool decode_clear(const uint8_t *payload, uint8_t length, uint8_t *joints, struct clear *out);
+uint8_t encode_home(const struct home *in, uint8_t joints, uint8_t *payload);
+bool decode_home(const uint8_t *payload, uint8_t length, uint8_t *joints, struct home *out);
+uint8_t encode_calibrate(const struct calibrate *in, uint8_t joints, uint8_t *payload);
+bool decode_calibrate(const uint8_t *payload, uint8_t length, uint8_t *joints, struct calibrate *out);
 uint8_t encode_welcome(const struct welcome *in, uint8_t joints, uint8_t *payload);
 bool decode_welcome(const uint8_t *payload, uint8_t length, uint8_t *joints, struct welcome *out);
 uint8_t encode_limits(const struct limits *in, uint8_t joints, uint8_t *payload);
@@ -220,5 +272,7 @@ uint8_t encode_telemetry(const struct telemetry *in, uint8_t joints, uint8_t *pa
 bool decode_telemetry(const uint8_t *payload, uint8_t length, uint8_t *joints, struct telemetry *out);
 uint8_t encode_health(const struct health *in, uint8_t joints, uint8_t *payload);
 bool decode_health(const uint8_t *payload, uint8_t length, uint8_t *joints, struct health *out);
+uint8_t encode_homing_report(const struct homing_report *in, uint8_t joints, uint8_t *payload);
+bool decode_homing_report(const uint8_t *payload, uint8_t length, uint8_t *joints, struct homing_report *out);
 
 #endif

@@ -8,7 +8,7 @@
 #define INSTRUCTION_SYNC_WRITE 0x83
 
 #define REGISTER_TORQUE 40
-#define REGISTER_GOAL 42 /* position, time, speed: two bytes each */
+#define REGISTER_GOAL 42 /* position, time, speed, torque limit: two bytes each */
 #define REGISTER_STATE 56
 #define STATE_BYTES 15 /* up to and with the current */
 #define STATE_TEMPERATURE 7
@@ -17,10 +17,12 @@
 #define STEPS_PER_TURN 4096
 #define TURN 6283185 /* [1e-6 rad] */
 #define MICROAMPERES_PER_STEP 6500
+#define STALL_MA 2700 /* what the whole torque takes */
+#define WHOLE_TORQUE 1000
 #define ANSWER_PATIENCE_US 1000
 
 /* Header, id, length, instruction, parameters, checksum. */
-#define PACKET_BYTES (8 + MAX_JOINTS * 7)
+#define PACKET_BYTES (8 + MAX_JOINTS * 9)
 
 static uint8_t checksum(const uint8_t *bytes, uint8_t count)
 {
@@ -92,14 +94,24 @@ static int16_t from_sign_bit(uint16_t word)
     return word & 0x8000 ? (int16_t)-value : value;
 }
 
+/* A bound on the current as the servos take it, in thousandths of their torque. */
+static uint16_t torque_share(int16_t current_ma)
+{
+    if (current_ma == 0 || current_ma > STALL_MA) {
+        return WHOLE_TORQUE;
+    }
+    return (uint16_t)((int32_t)current_ma * WHOLE_TORQUE / STALL_MA);
+}
+
 static void write_goals(const struct servo_bus *bus, const struct motor_goals *goals)
 {
     uint8_t packet[PACKET_BYTES], *at = packet + 5;
-    at = put_u8(put_u8(at, REGISTER_GOAL), 6);
+    at = put_u8(put_u8(at, REGISTER_GOAL), 8);
     for (uint8_t i = 0; i < bus->count; i++) {
         at = put_u8(at, bus->mounts[i].id);
         at = put_u16(at, with_sign_bit(steps_of(&bus->mounts[i], goals->position[i])));
         at = put_u32(at, 0); /* no time, no speed limit: the path comes in small steps */
+        at = put_u16(at, torque_share(goals->current_ma));
     }
     transmit(bus, BROADCAST, INSTRUCTION_SYNC_WRITE, (uint8_t)(at - packet - 5), packet);
 }

@@ -17,6 +17,10 @@ static uint8_t command_of(uint8_t message)
         return COMMAND_END;
     case MESSAGE_CLEAR:
         return COMMAND_CLEAR;
+    case MESSAGE_HOME:
+        return COMMAND_HOME;
+    case MESSAGE_CALIBRATE:
+        return COMMAND_CALIBRATE;
     default:
         return COMMAND_COUNT;
     }

@@ -34,6 +34,9 @@ static void send_health(struct controller *controller)
     struct health health = {.device_us = controller->time_us, .gaps = controller->gaps};
     memcpy(health.current_ma, readings->current_ma, sizeof health.current_ma);
     memcpy(health.temperature_c, readings->temperature_c, sizeof health.temperature_c);
+    for (uint8_t i = 0; i < controller->setup->joints; i++) {
+        health.preload_20urad[i] = (int16_t)(controller->follower.preload[i] / PRELOAD_URAD);
+    }
     uint8_t payload[MAX_PAYLOAD];
     uint8_t length = encode_health(&health, controller->setup->joints, payload);
     link_send(controller, MESSAGE_HEALTH, controller->session, payload, length);

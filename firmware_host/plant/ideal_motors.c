@@ -13,7 +13,8 @@ void motors_start(void)
     for (uint8_t i = 0; i < MAX_JOINTS; i++) {
         joint[i] = (int32_t)(HAND_START_RAD[i] * 1e6f);
     }
-    motors_of(&HAND_SETUP.transmission, HAND_SETUP.joints, joint, position);
+    motors_of(
+        &HAND_SETUP.transmission, HAND_SETUP.joints, HAND_SETUP.transmission.offset, joint, position);
 }
 
 void motors_exchange(

@@ -29,9 +29,8 @@ void plant_rest_at(struct plant *plant, const struct hand_setup *setup, const re
     plant->group = setup->transmission.group;
     for (uint8_t i = 0; i < plant->joints; i++) {
         plant->joint[i] = start[i];
-        /* Printed stops lie a little outside the range that is used. */
-        plant->lower[i] = (real)setup->limits.lower[i] * (real)1e-6 - (real)0.03;
-        plant->upper[i] = (real)setup->limits.upper[i] * (real)1e-6 + (real)0.03;
+        plant->lower[i] = (real)setup->homing.lower[i] * (real)1e-6;
+        plant->upper[i] = (real)setup->homing.upper[i] * (real)1e-6;
         plant->offset[i] = (real)setup->transmission.offset[i] * (real)1e-6;
         plant->temperature_c[i] = AMBIENT_C;
         for (uint8_t k = 0; k < plant->group; k++) {
@@ -49,10 +48,22 @@ void plant_rest_at(struct plant *plant, const struct hand_setup *setup, const re
     plant_read(plant, &readings);
 }
 
+void plant_misplace_zero(struct plant *plant, uint8_t motor, real error)
+{
+    plant->offset[motor] += error;
+    plant->motor[motor] += error;
+}
+
+/* Motors as mounted: what they call forwards. */
+static real mounting(const struct plant *plant, uint8_t motor)
+{
+    return plant->reversed[motor] ? (real)-1 : (real)1;
+}
+
 static int32_t encoder(const struct plant *plant, uint8_t motor)
 {
     real step = plant->encoder_step > 0 ? plant->encoder_step : (real)1e-6;
-    real steps = plant->motor[motor] / step;
+    real steps = mounting(plant, motor) * plant->motor[motor] / step;
     int32_t whole = (int32_t)(steps < 0 ? steps - (real)0.5 : steps + (real)0.5);
     return (int32_t)((real)whole * step * (real)1e6 + (whole < 0 ? (real)-0.5 : (real)0.5));
 }
@@ -71,9 +82,16 @@ static real servo_torque(const struct plant *plant, const struct motor_goals *go
     if (!plant->torque_on || plant->dead[motor]) {
         return 0;
     }
-    int32_t rate = (int32_t)(plant->motor_rate[motor] * (real)1e6);
+    struct pd servo = SERVO;
+    real allowed = (real)goals->current_ma * TORQUE_PER_AMPERE * (real)1000; /* [1e-6 N m] */
+    if (goals->current_ma > 0 && allowed < (real)servo.torque_limit) {
+        servo.torque_limit = (int32_t)allowed;
+    }
+    real sign = mounting(plant, motor);
+    int32_t rate = (int32_t)(sign * plant->motor_rate[motor] * (real)1e6);
     int32_t error = goals->position[motor] - encoder(plant, motor);
-    return (real)pd_torque(&SERVO, error, goals->velocity[motor] - rate) * (real)1e-6;
+    int32_t torque = pd_torque(&servo, error, goals->velocity[motor] - rate);
+    return sign * (real)torque * (real)1e-6;
 }
 
 static real stop_torque(const struct plant *plant, uint8_t joint)

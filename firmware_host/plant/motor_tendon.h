@@ -19,7 +19,8 @@ struct plant {
     uint8_t joints;
     uint8_t group;
     real gain[MAX_JOINTS][MAX_GROUP];
-    real offset[MAX_JOINTS];
+    real offset[MAX_JOINTS]; /* where the zeros truly are */
+    bool reversed[MAX_JOINTS]; /* motors that turn the other way than the design says */
     real lower[MAX_JOINTS]; /* end stops of the joints [rad] */
     real upper[MAX_JOINTS];
     real joint[MAX_JOINTS]; /* [rad] */
@@ -38,6 +39,8 @@ struct plant {
 
 /* Joints at rest at `start` [rad], tendons slack of any stretch, torque off. */
 void plant_rest_at(struct plant *plant, const struct hand_setup *setup, const real *start);
+/* The hand is put together otherwise than designed: this motor's zero lies `error` rad off. */
+void plant_misplace_zero(struct plant *plant, uint8_t motor, real error);
 /* Advance by `steps` steps of 1 ms towards goals that hold for all of them. */
 void plant_step(struct plant *plant, const struct motor_goals *goals, uint16_t steps);
 void plant_read(struct plant *plant, struct motor_readings *readings);

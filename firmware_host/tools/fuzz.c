@@ -35,7 +35,7 @@ static uint8_t wrap(uint8_t kind, uint16_t seq, const uint8_t *payload, uint8_t 
 {
     bool stranger = kind == MESSAGE_HELLO || draw(100) == 0;
     uint16_t session = stranger ? (uint16_t)draw(65536) : device.controller.session;
-    struct frame frame = {draw(200) ? 1 : (uint8_t)draw(256), kind, seq, session, length, payload};
+    struct frame frame = {draw(200) ? PROTOCOL_VERSION : (uint8_t)draw(256), kind, seq, session, length, payload};
     return frame_encode(&frame, wire);
 }
 
@@ -49,6 +49,7 @@ static uint8_t any_knot(uint8_t *payload)
         knot.position_urad[i] = wild ? (int32_t)draw(UINT32_MAX) : (int32_t)draw(3000);
         knot.velocity_urad_s[i] = wild ? (int32_t)draw(UINT32_MAX) : (int32_t)draw(20000) - 10000;
         knot.acceleration_urad_s2[i] = wild ? (int32_t)draw(UINT32_MAX) : (int32_t)draw(100000);
+        knot.preload_20urad[i] = wild ? (int16_t)draw(65536) : (int16_t)draw(20);
         if (resting) {
             knot.velocity_urad_s[i] = knot.acceleration_urad_s2[i] = 0;
         }
@@ -70,6 +71,10 @@ static uint8_t sensible_kind(void)
     switch (device.controller.state) {
     case STATE_READY:
         return MESSAGE_ARM;
+    case STATE_IDLE:
+        return draw(3) ? MESSAGE_CALIBRATE : MESSAGE_HOME;
+    case STATE_HOMING:
+        return draw(50) ? MESSAGE_PING : MESSAGE_HOLD;
     case STATE_ARMED:
         return device.controller.follower.queued < 8 ? MESSAGE_KNOT : TO_ARMED[draw(4)];
     case STATE_RUNNING:
@@ -83,7 +88,8 @@ static uint32_t any_frame(uint8_t *wire)
 {
     static const uint8_t KINDS[] = {
         MESSAGE_HELLO, MESSAGE_ASK_LIMITS, MESSAGE_PING, MESSAGE_HOLD, MESSAGE_ESTOP, MESSAGE_ARM,
-        MESSAGE_KNOT, MESSAGE_KNOT, MESSAGE_KNOT, MESSAGE_START, MESSAGE_END, MESSAGE_CLEAR, 0x99};
+        MESSAGE_KNOT, MESSAGE_KNOT, MESSAGE_KNOT, MESSAGE_START, MESSAGE_END, MESSAGE_CLEAR,
+        MESSAGE_HOME, MESSAGE_CALIBRATE, MESSAGE_ASK_HOMING, 0x99};
     uint8_t payload[MAX_PAYLOAD], length = 0;
     uint8_t kind = draw(12) ? sensible_kind() : KINDS[draw(sizeof KINDS)];
     uint16_t seq = device.controller.sequence.expected;
@@ -96,6 +102,12 @@ static uint32_t any_frame(uint8_t *wire)
     } else if (kind == MESSAGE_END) {
         put_u32(payload, device.controller.follower.accepted);
         length = 4;
+    } else if (kind == MESSAGE_CALIBRATE) {
+        bool sane = draw(3) > 0;
+        length = 4 * MAX_JOINTS;
+        for (uint8_t i = 0; i < MAX_JOINTS; i++) {
+            put_u32(payload + 4 * i, sane ? draw(9) - 4 : draw(UINT32_MAX));
+        }
     } else if (kind == MESSAGE_PING) {
         length = 8;
         memset(payload, (int)draw(256), 8);
@@ -127,8 +139,10 @@ static bool commands_are_legal(void)
     const struct controller *controller = &device.controller;
     const struct joint_limits *limits = &controller->setup->limits;
     for (uint8_t i = 0; i < controller->setup->joints; i++) {
-        int32_t command = controller->follower.command[i];
-        if (command < limits->lower[i] - 1000 || command > limits->upper[i] + 1000) {
+        /* A hand that is not led rests where it was put: its stops, and what their springs give. */
+        bool led = controller->follower.rate > 0;
+        int32_t command = controller->follower.command[i], margin = led ? 1000 : 60000;
+        if (command < limits->lower[i] - margin || command > limits->upper[i] + margin) {
             return false;
         }
     }
@@ -139,7 +153,7 @@ static bool commands_are_legal(void)
 static bool still_listens(void)
 {
     uint8_t wire[FRAME_MAX_WIRE];
-    struct frame hello = {1, MESSAGE_HELLO, 0, SESSION, 0, wire};
+    struct frame hello = {PROTOCOL_VERSION, MESSAGE_HELLO, 0, SESSION, 0, wire};
     uint8_t count = frame_encode(&hello, wire);
     feed((const uint8_t *)"", 1);
     device.output_used = 0;
@@ -151,13 +165,16 @@ static char *setup_text(void)
 {
     static char text[4096];
     char *at = text;
-    at += sprintf(at, "joints 12\nhomed 1\nprotocol 1\ntick_hz 250\nbuffer_knots 64\ngroup 1\n");
+    at += sprintf(at, "joints 12\nhomed 1\nprotocol 2\ntick_hz 250\nbuffer_knots 64\ngroup 1\n");
     at += sprintf(at, "silence_us 500000\ntracking_error 150000\n");
+    at += sprintf(at, "preload_limit 400000\npreload_rate 1000000\nhoming_speed 500000\nhoming_ma 400\n");
     const char *names[] = {"lower -10000", "upper 1000000", "velocity 1500000",
-                           "acceleration 12000000", "gain 16777216", "inverse 16777216"};
-    for (int row = 0; row < 6; row++) {
-        char name[16], number[16];
-        sscanf(names[row], "%15s %15s", name, number);
+                           "acceleration 12000000", "gain 16777216", "inverse 16777216",
+                           "motor_lower -20000", "motor_upper 1010000", "motor_velocity 1600000",
+                           "motor_acceleration 13000000", "homing_lower -30000", "homing_upper 1030000"};
+    for (size_t row = 0; row < sizeof names / sizeof names[0]; row++) {
+        char name[32], number[16];
+        sscanf(names[row], "%31s %15s", name, number);
         at += sprintf(at, "%s", name);
         for (int i = 0; i < 12; i++) {
             at += sprintf(at, " %s", number);

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from fpcad.run import framing, messages
 from fpcad.run.codec import KINDS
-from fpcad.run.messages import Cause, Reason, State
+from fpcad.run.messages import Cause, HomingOutcome, Reason, State
 from fpcad.run.sim.states import NEXT
 
 CORE = Path(__file__).parents[1] / "core"
@@ -35,7 +35,7 @@ def _size(code: str) -> int:
 
 
 def _enumeration(cls: type[IntEnum]) -> str:
-    prefix = cls.__name__.upper()
+    prefix = snake(cls.__name__).upper()
     body = "".join(f"    {prefix}_{member.name} = {member.value},\n" for member in cls)
     return f"enum {snake(cls.__name__)} {{\n{body}}};\n"
 
@@ -132,9 +132,9 @@ def messages_header() -> str:
         _NOTE
         + "#ifndef MESSAGES_H\n#define MESSAGES_H\n\n#include <stdbool.h>\n#include <stdint.h>\n",
         f"#define PROTOCOL_VERSION {framing.PROTOCOL_VERSION}\n#define MAX_PAYLOAD {framing.MAX_PAYLOAD}\n"
-        f"#define MAX_JOINTS {messages.MAX_JOINTS}\n",
+        f"#define MAX_JOINTS {messages.MAX_JOINTS}\n#define PRELOAD_URAD {messages.PRELOAD_URAD}\n",
         f"enum message {{\n{codes}}};\n",
-        *(_enumeration(cls) for cls in (State, Cause, Reason)),
+        *(_enumeration(cls) for cls in (State, Cause, HomingOutcome, Reason)),
         *(_struct(cls) for cls in _by_code()),
         "".join(f"{line};\n" for cls in _by_code() for line in _signatures(cls)),
         "#endif\n",

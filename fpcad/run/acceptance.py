@@ -28,18 +28,23 @@ class Violation:
     limit: float
 
 
-def first_violation(knots: Knots, limits: JointLimits) -> Violation | None:
-    """First segment of the knots (N, n) that leaves the limits, if any."""
+def first_violation(
+    knots: Knots, limits: JointLimits, counts: Array | float = 1.0
+) -> Violation | None:
+    """First segment of the knots (N, n) that leaves the limits, if any.
+
+    `counts`: of how many counts the rounding of the numbers may be, for each (n,) or for all.
+    """
     steps = np.diff(knots.time_s)
     for start, step, c in zip(knots.time_s, steps, segment_coefficients(knots), strict=False):
-        violation = _segment_violation(c, float(step), float(start), limits)
+        violation = _segment_violation(c, float(step), float(start), limits, counts)
         if violation is not None:
             return violation
     return None
 
 
 def _segment_violation(
-    c: Array, step_s: float, start_s: float, limits: JointLimits
+    c: Array, step_s: float, start_s: float, limits: JointLimits, counts: Array | float
 ) -> Violation | None:
     position, velocity, acceleration = derivatives(c, step_s)
     bounds = (
@@ -52,14 +57,15 @@ def _segment_violation(
             limits.acceleration_rad_s2,
         ),
     )
-    for (reason, polynomials, lower, upper), slack in zip(bounds, _rounding(step_s), strict=True):
+    for (reason, polynomials, lower, upper), one in zip(bounds, _rounding(step_s), strict=True):
+        slack = np.broadcast_to(one * counts, lower.shape)
         low, high = hull(polynomials)
         # The hull is cheap and sure; only where it is too wide do the exact extrema decide.
         for joint in np.flatnonzero((low < lower - slack) | (high > upper + slack)):
             least, greatest = extrema(polynomials[:, joint])
-            if least < lower[joint] - slack:
+            if least < lower[joint] - slack[joint]:
                 return Violation(reason, int(joint), start_s, least, float(lower[joint]))
-            if greatest > upper[joint] + slack:
+            if greatest > upper[joint] + slack[joint]:
                 return Violation(reason, int(joint), start_s, greatest, float(upper[joint]))
     return None
 

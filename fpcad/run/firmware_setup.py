@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from fpcad.run.framing import PROTOCOL_VERSION
 from fpcad.run.knots import BUFFER_KNOTS
 from fpcad.run.limits import JointLimits, to_counts
-from fpcad.run.transmission import Transmission, direct, read_transmission
+from fpcad.run.motor_limits import MotorLimits, motor_limits_of
+from fpcad.run.transmission import Transmission, transmission_of
 
 GAIN = 1 << 24
 """Fixed point of the transmission's gains."""
@@ -34,14 +35,26 @@ class FirmwareSetup:
     """Largest current of one motor; 0: not guarded."""
     temperature_c: int = 0
     """Highest temperature of one motor; 0: not guarded."""
+    hold_ma: int = 0
+    """Largest current of one motor while the hand holds; 0: as always."""
+    preload_limit_rad: float = 0.5
+    """Largest angle that a grip's goals may lie beyond the path."""
+    preload_rate_rad_s: float = 1.0
+    end_stops_rad: float = 0.03
+    """How far the joints' end stops lie beyond the limits."""
+    homing_speed_rad_s: float = 0.5
+    homing_ma: int = 400
+    """Largest current of one motor while the zeros are searched."""
+
+    @property
+    def motor_limits(self) -> MotorLimits:
+        """What the motors may do, by the type that the limits' configuration names."""
+        return motor_limits_of(self.limits)
 
     @property
     def transmission(self) -> Transmission:
         """The transmission that the limits' configuration holds; without one, one to one."""
-        names = self.limits.names
-        if not self.limits.configuration.startswith(b"#"):
-            return direct(len(names))
-        return read_transmission(self.limits.configuration, names)
+        return transmission_of(self.limits)
 
     def numbers(self) -> dict[str, int | tuple[int, ...]]:
         """All numbers by their names in the firmware's structure."""
@@ -63,10 +76,32 @@ class FirmwareSetup:
             "upper": wire.upper_urad,
             "velocity": wire.velocity_urad_s,
             "acceleration": wire.acceleration_urad_s2,
+            "hold_ma": self.hold_ma,
+            **self._motor_numbers(),
+            **self._homing_numbers(),
+            "preload_limit": round(self.preload_limit_rad * 1e6),
+            "preload_rate": round(self.preload_rate_rad_s * 1e6),
             "group": gears.group,
             "gain": _gains(gears, gears.matrix),
             "inverse": _gains(gears, np.linalg.inv(gears.matrix)),
             "offset": to_counts(gears.offset_rad),
+        }
+
+    def _motor_numbers(self) -> dict[str, int | tuple[int, ...]]:
+        motors = self.motor_limits
+        return {
+            "motor_lower": to_counts(motors.lower_rad),
+            "motor_upper": to_counts(motors.upper_rad),
+            "motor_velocity": to_counts(motors.velocity_rad_s),
+            "motor_acceleration": to_counts(motors.acceleration_rad_s2),
+        }
+
+    def _homing_numbers(self) -> dict[str, int | tuple[int, ...]]:
+        return {
+            "homing_lower": to_counts(self.limits.lower_rad - self.end_stops_rad),
+            "homing_upper": to_counts(self.limits.upper_rad + self.end_stops_rad),
+            "homing_speed": round(self.homing_speed_rad_s * 1e6),
+            "homing_ma": self.homing_ma,
         }
 
 
@@ -85,14 +120,10 @@ def setup_source(setup: FirmwareSetup, start_rad: Sequence[float]) -> str:
         assert isinstance(flat, tuple)
         rows = [flat[i : i + group] for i in range(0, len(flat), group)]
         numbers[name] = tuple(_braces(row) for row in rows)  # type: ignore[assignment]
-    inner = {
-        "limits": ("lower", "upper", "velocity", "acceleration"),
-        "transmission": ("group", "gain", "inverse", "offset"),
-    }
-    nested = {name for names in inner.values() for name in names}
+    nested = {name for names in _INNER.values() for name in names}
     lines = [f"    .{name} = {_c(value)}," for name, value in numbers.items() if name not in nested]
-    for part, names in inner.items():
-        body = "".join(f"        .{name} = {_c(numbers[name])},\n" for name in names)
+    for part, names in _INNER.items():
+        body = "".join(f"        .{_within(part, n)} = {_c(numbers[n])},\n" for n in names)
         lines.append(f"    .{part} = {{\n{body}    }},")
     start = ", ".join(f"{float(x)!r}f" for x in start_rad)
     return (
@@ -101,6 +132,22 @@ def setup_source(setup: FirmwareSetup, start_rad: Sequence[float]) -> str:
         "const struct hand_setup HAND_SETUP = {\n" + "\n".join(lines) + "\n};\n\n"
         f"const float HAND_START_RAD[MAX_JOINTS] = {{{start}}};\n"
     )
+
+
+_INNER = {
+    "limits": ("lower", "upper", "velocity", "acceleration"),
+    "motor_limits": ("motor_lower", "motor_upper", "motor_velocity", "motor_acceleration"),
+    "transmission": ("group", "gain", "inverse", "offset"),
+    "homing": ("homing_lower", "homing_upper", "homing_speed", "homing_ma"),
+    "preload": ("preload_limit", "preload_rate"),
+}
+"""Numbers that stand in a structure within the setup."""
+
+
+def _within(part: str, name: str) -> str:
+    """A number's name within its structure: `homing_speed` of `homing` is `speed`."""
+    inner = name.removeprefix(f"{part.removesuffix('_limits')}_")
+    return "current_ma" if inner == "ma" else inner
 
 
 def _gains(gears: Transmission, matrix: NDArray[np.floating]) -> tuple[int, ...]:

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from fpcad.run.errors import TrajectoryError
 from fpcad.run.limits import COUNTS_PER_UNIT, JointLimits, from_counts, to_counts
-from fpcad.run.messages import Knot
-from fpcad.run.quintic import Array, Knots, evaluate
+from fpcad.run.messages import PRELOAD_URAD, Knot
+from fpcad.run.quintic import Array, Knots, evaluate, preload_at
 
 BUFFER_KNOTS = 64
 """Knots that a controller holds, unless it says otherwise; 10 kB."""
-LINE_KNOTS_PER_S = 40.0
-"""What a 115200 baud line carries: a knot has 164 bytes, and one is on the way at a time."""
+LINE_KNOTS_PER_S = 36.0
+"""What a 115200 baud line carries: a knot has 188 bytes, and one is on the way at a time."""
 CUSHION_S = 0.5
 """Motion that must be queued at any time, so that a stall of the host does no harm."""
 LONGEST_STEP_S = 0.1
@@ -24,6 +24,7 @@ SHORTEST_STEP_S = 0.004
 THINNED_STEP_S = 0.03
 """Spacing of the knots of a file that is too dense for the line."""
 _SHORTEST_APPROACH_S = 0.1
+_LARGEST_PRELOAD = 2**15 - 1
 WIRE_TOLERANCE_RAD = 1e-4
 """Largest error that thinning a dense file may make; 5 um at 50 mm."""
 
@@ -69,6 +70,7 @@ def from_wire(messages: tuple[Knot, ...]) -> Knots:
         np.array([from_counts(knot.position_urad) for knot in messages]),
         np.array([from_counts(knot.velocity_urad_s) for knot in messages]),
         np.array([from_counts(knot.acceleration_urad_s2) for knot in messages]),
+        np.array([from_counts(knot.preload_20urad) for knot in messages]) * PRELOAD_URAD,
     )
 
 
@@ -90,6 +92,7 @@ def approach(present_rad: Array, knots: Knots, limits: JointLimits, share: float
         np.vstack([present_rad, knots.position]),
         np.vstack([still, knots.velocity]),
         np.vstack([still, knots.acceleration]),
+        None if knots.preload is None else np.vstack([knots.preload[:1], knots.preload]),
     )
 
 
@@ -119,6 +122,13 @@ def _divided(time_s: Array) -> Array:
     return np.concatenate([*inner, time_s[-1:]])
 
 
+def _preload_counts(preload_rad: Array) -> tuple[int, ...]:
+    counts = np.rint(preload_rad * (COUNTS_PER_UNIT / PRELOAD_URAD))
+    if not (np.abs(counts) <= _LARGEST_PRELOAD).all():
+        raise ValueError(f"a preload of {np.abs(preload_rad).max():.3g} rad does not fit 16 bits")
+    return tuple(int(count) for count in counts)
+
+
 def _rounded(knots: Knots, time_s: Array) -> WireKnots:
     t_us: NDArray[np.int64] = np.rint(time_s * 1e6).astype(np.int64)
     # Sampled at the rounded time, so that rounding time costs no position.
@@ -128,8 +138,8 @@ def _rounded(knots: Knots, time_s: Array) -> WireKnots:
         row[-1] = given[-1]  # at rest exactly, though the last time was rounded
     try:
         messages = tuple(
-            Knot(int(t), to_counts(p), to_counts(v), to_counts(a))
-            for t, p, v, a in zip(t_us, *rows, strict=True)
+            Knot(int(t), to_counts(p), to_counts(v), to_counts(a), _preload_counts(w))
+            for t, p, v, a, w in zip(t_us, *rows, preload_at(knots, t_us / 1e6), strict=True)
         )
     except ValueError as error:
         raise TrajectoryError(f"the trajectory's numbers are too large to send: {error}") from error

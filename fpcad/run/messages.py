@@ -13,6 +13,9 @@ Urads = tuple[int, ...]
 MAX_JOINTS = MAX_PAYLOAD // 16
 """Joints whose limits (four numbers each) fit in one payload."""
 
+PRELOAD_URAD = 20
+"""Preload travels in counts of so many 1e-6 rad: 16 bits then reach 0.65 rad."""
+
 
 class State(IntEnum):
     """What a controller is doing."""
@@ -40,6 +43,20 @@ class Cause(IntEnum):
     TEMPERATURE = 6
     MOTOR_LOST = 7
     SWITCH = 8
+    HOMING = 9
+
+
+class HomingOutcome(IntEnum):
+    """How the search for the joints' zeros ended, or where the zeros in use come from."""
+
+    NEVER = 0
+    SEARCHING = 1
+    FOUND = 2
+    NO_END = 3
+    WRONG_RANGE = 4
+    WRONG_SIGN = 5
+    STOPPED = 6
+    CALIBRATED = 7
 
 
 class Reason(IntEnum):
@@ -60,6 +77,11 @@ class Reason(IntEnum):
     KNOT_COUNT = 13
     STILL_MOVING = 14
     SEGMENT_TIME = 15
+    PRELOAD_LIMIT = 16
+    MOTOR_POSITION_LIMIT = 17
+    MOTOR_VELOCITY_LIMIT = 18
+    MOTOR_ACCELERATION_LIMIT = 19
+    IMPLAUSIBLE = 20
 
 
 @message(0x01)
@@ -89,6 +111,11 @@ class Estop:
     """Host: torque off, latched. Acted on at receipt, in any session. Answer: Ack."""
 
 
+@message(0x06)
+class AskHoming:
+    """Host: asks for what homing has found. Answer: HomingReport."""
+
+
 @message(0x10, sequenced=True)
 class Arm:
     """Host: READY to ARMED; empties the queue of knots."""
@@ -96,12 +123,17 @@ class Arm:
 
 @message(0x11, sequenced=True)
 class Knot:
-    """Host: where the joints are at path time `t_us`; quintic Hermite in between."""
+    """Host: where the joints are at path time `t_us`; quintic Hermite in between.
+
+    `preload_20urad` is put upon the position as the motors' goals, linear in between: what stretches
+    the tendons for a grip. Position limits do not count it; it has a bound and a rate of its own.
+    """
 
     t_us: int = wire("Q")
     position_urad: Urads = wire("i", per_joint=True)
     velocity_urad_s: Urads = wire("i", per_joint=True)
     acceleration_urad_s2: Urads = wire("i", per_joint=True)
+    preload_20urad: tuple[int, ...] = wire("h", per_joint=True)
 
 
 @message(0x12, sequenced=True)
@@ -123,9 +155,25 @@ class Clear:
     """Host: leave HOLD, FAULT or ESTOP; the goal becomes the present position."""
 
 
+@message(0x15, sequenced=True)
+class Home:
+    """Host: find the joints' ends with little current, IDLE or READY to HOMING, then READY."""
+
+
+@message(0x16, sequenced=True)
+class Calibrate:
+    """Host: the motors' zeros as measured before; motor = transmission * joint + offset."""
+
+    offset_urad: Urads = wire("i", per_joint=True)
+
+
 @message(0x40)
 class Welcome:
-    """Controller: who I am. `configuration` is the hash of limits and transmission."""
+    """Controller: who I am.
+
+    `configuration` is the hash of limits and transmission; `homed` is 1 when the motors' zeros are
+    known, and `calibration` is then the CRC-32 of them, as the payload of a Calibrate.
+    """
 
     protocol: int = wire("B")
     joints: int = wire("B")
@@ -135,6 +183,8 @@ class Welcome:
     buffer_knots: int = wire("H")
     boot_nonce: int = wire("I")
     configuration: int = wire("Q")
+    homed: int = wire("B")
+    calibration: int = wire("I")
     build: bytes = wire("16s")
 
 
@@ -208,9 +258,25 @@ class Telemetry:
 
 @message(0x48)
 class Health:
-    """Controller, unasked, 10 times a second: its motors, and the gaps in what it heard."""
+    """Controller, unasked, 10 times a second: its motors, the gaps in what it heard, the preload."""
 
     device_us: int = wire("Q")
     gaps: int = wire("H")
     current_ma: tuple[int, ...] = wire("h", per_joint=True)
     temperature_c: tuple[int, ...] = wire("b", per_joint=True)
+    preload_20urad: tuple[int, ...] = wire("h", per_joint=True)
+
+
+@message(0x49)
+class HomingReport:
+    """Controller: how homing ended (a HomingOutcome), at which joint, and what it found.
+
+    `offset_urad` are the motors' zeros in use; `lower_urad` and `upper_urad` the joints' ends as
+    found in the last search, counted from these zeros, and 0 for those not searched yet.
+    """
+
+    outcome: int = wire("B")
+    joint: int = wire("B")
+    offset_urad: Urads = wire("i", per_joint=True)
+    lower_urad: Urads = wire("i", per_joint=True)
+    upper_urad: Urads = wire("i", per_joint=True)

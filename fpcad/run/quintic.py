@@ -32,6 +32,8 @@ class Knots:
     position: Array  # (N, n) [rad]
     velocity: Array  # (N, n) [rad/s]
     acceleration: Array  # (N, n) [rad/s^2]
+    preload: Array | None = None
+    """(N, n) [rad] that the motors' goals lie beyond the position, linear between knots."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,13 @@ def evaluate(knots: Knots, time_s: Array) -> Motion:
     h = np.diff(knots.time_s)[segment]
     s = (time_s - knots.time_s[segment]) / h
     return evaluate_polynomial(segment_coefficients(knots)[segment], s, h)
+
+
+def preload_at(knots: Knots, time_s: Array) -> Array:
+    """Preload (M, n) [rad] at times (M,): straight from knot to knot; zero where there is none."""
+    if knots.preload is None:
+        return np.zeros((len(time_s), knots.position.shape[1]))
+    return np.stack([np.interp(time_s, knots.time_s, column) for column in knots.preload.T], axis=1)
 
 
 def evaluate_polynomial(c: Array, s: Array, h: Array) -> Motion:

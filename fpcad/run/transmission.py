@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,9 +11,11 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from fpcad.run.errors import TrajectoryError
+from fpcad.run.limits import JointLimits
 
 Array = NDArray[np.float64]
 
+_MOTOR_TYPE = re.compile(rb"^motor_type: *([A-Za-z0-9.-]+) *$", re.MULTILINE)
 LARGEST_GROUP = 4
 """Joints that may share motors, as the firmware is compiled."""
 
@@ -47,6 +50,19 @@ class Transmission:
 def direct(joints: int) -> Transmission:
     """One motor a joint, one to one."""
     return Transmission(np.eye(joints), np.zeros(joints))
+
+
+def motor_type_of(text: bytes) -> str:
+    """The motor type that the bytes of a build's `transmission.yaml` name, or an empty string."""
+    found = _MOTOR_TYPE.search(text)
+    return "" if found is None else found[1].decode("ascii")
+
+
+def transmission_of(limits: JointLimits) -> Transmission:
+    """The transmission that the limits' configuration holds; without one, one to one."""
+    if not limits.configuration.startswith(b"#"):
+        return direct(len(limits.names))
+    return read_transmission(limits.configuration, limits.names)
 
 
 def read_transmission(text: bytes, joint_names: tuple[str, ...]) -> Transmission:

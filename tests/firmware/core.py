@@ -17,7 +17,7 @@ from fpcad.run.messages import MAX_JOINTS, Cause, State
 from tests.run.fixtures import hand_limits, swing
 
 FIRMWARE = Path(__file__).parents[2] / "firmware_host"
-JAM, DEATH, STUCK, HEAT = range(4)
+JAM, DEATH, STUCK, HEAT = "jam", "death", "stuck", "heat"
 
 
 class View(ctypes.Structure):
@@ -34,6 +34,7 @@ class View(ctypes.Structure):
         ("cause", ctypes.c_uint8),
         ("torque_on", ctypes.c_uint8),
         ("command", ctypes.c_int32 * MAX_JOINTS),
+        ("preload", ctypes.c_int32 * MAX_JOINTS),
         ("measured", ctypes.c_int32 * MAX_JOINTS),
         ("position", ctypes.c_double * MAX_JOINTS),
     )
@@ -57,7 +58,7 @@ def library() -> ctypes.CDLL:
     lib = ctypes.CDLL(built or str(made("library") / "libfpcad_firmware.so"))
     lib.bench_new.restype = ctypes.c_void_p
     lib.bench_take_output.restype = ctypes.c_uint32
-    for name in ("recode", "frame", "state_after"):
+    for name in ("recode", "frame", "state_after", "mishap"):
         getattr(lib, f"bench_{name}").restype = ctypes.c_uint8
     return lib
 
@@ -96,9 +97,13 @@ class CoreFollower:
 class CoreController:
     """The same face as :class:`fpcad.run.sim.controller.Controller`."""
 
-    def __init__(self, setup: FirmwareSetup, start_rad: np.ndarray) -> None:
+    def __init__(
+        self, setup: FirmwareSetup, start_rad: np.ndarray, zero_error_rad: np.ndarray | None = None
+    ) -> None:
         fault = ctypes.c_char_p()
         text = setup_text(setup, start_rad).encode()
+        if zero_error_rad is not None:
+            text += b"zero_error " + " ".join(map(repr, zero_error_rad.tolist())).encode() + b"\n"
         self._device = ctypes.c_void_p(library().bench_new(text, ctypes.byref(fault)))
         assert fault.value is None, fault.value
         self._view = View()
@@ -127,8 +132,8 @@ class CoreController:
     def tick(self) -> None:
         self.call("tick")
 
-    def mishap(self, kind: int, motor: int) -> None:
-        self.call("mishap", ctypes.c_uint8(kind), ctypes.c_uint8(motor))
+    def mishap(self, kind: str, number: int) -> None:
+        assert self.call("mishap", kind.encode(), ctypes.c_uint8(number))
 
     @property
     def state(self) -> State:
@@ -153,6 +158,6 @@ class CoreController:
 
 def core_controller(**changes) -> CoreController:
     start = changes.pop("start_rad", swing().position[0])
-    return CoreController(
-        FirmwareSetup(**{"limits": hand_limits(), "boot_nonce": 7, **changes}), start
-    )
+    zero_error_rad = changes.pop("zero_error_rad", None)
+    setup = FirmwareSetup(**{"limits": hand_limits(), "boot_nonce": 7, **changes})
+    return CoreController(setup, start, zero_error_rad)

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from firmware_host.tools import generate
 from fpcad.run.acceptance import first_violation
 from fpcad.run.codec import CLASSES, KINDS, encode
+from fpcad.run.firmware_setup import GAIN
 from fpcad.run.framing import MAX_PAYLOAD, Frame, encode_frame
 from fpcad.run.limits import from_counts
 from fpcad.run.messages import State
@@ -106,7 +107,8 @@ def reference(rows):
 def test_segments_are_judged_alike(seed):
     rows = plausible_segments(3_000, seed)
     limits = hand_limits().on_wire()
-    box = np.array([limits.lower_urad[0], limits.upper_urad[0], limits.velocity_urad_s[0], limits.acceleration_urad_s2[0]], np.int32)  # fmt: skip
+    box = [column[0] for column in vars(limits).values()]
+    box = np.array([*box, -(2**31), *[2**31 - 1] * 3, GAIN, 0], np.int32)
     reasons = np.zeros(len(rows), np.uint8)
     library().bench_violation(_pointer(rows), _pointer(box), _pointer(reasons), len(rows))
     ours = np.array([judged(row) for row in rows])

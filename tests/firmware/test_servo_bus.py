@@ -41,6 +41,7 @@ class Goals(ctypes.Structure):
         ("position", ctypes.c_int32 * MAX_JOINTS),
         ("velocity", ctypes.c_int32 * MAX_JOINTS),
         ("torque_on", ctypes.c_bool),
+        ("current_ma", ctypes.c_int16),
     )
 
 
@@ -113,9 +114,8 @@ def test_packets_are_those_of_the_makers_manual():
     assert packet(1, 3, 0x2A, 0, 8, 0, 0, 0xE8, 3).hex() == "ffff0109032a00080000e803d5"
     servos = Servos()
     servos.exchange([0.0, 0.0, 0.0], torque_on=False)
-    assert servos.sent[0] == packet(
-        0xFE, 0x83, 42, 6, *(1, 0, 8, 0, 0, 0, 0), *(2, 0, 8, 0, 0, 0, 0), *(3, 0, 8, 0, 0, 0, 0)
-    )
+    still = 0, 8, 0, 0, 0, 0, *(1000).to_bytes(2, "little")
+    assert servos.sent[0] == packet(0xFE, 0x83, 42, 8, *(1, *still), *(2, *still), *(3, *still))
     assert servos.sent[1] == packet(1, 2, 56, 15)
 
 

@@ -11,6 +11,7 @@ import pytest
 from fpcad.run.messages import (
     Ack,
     Arm,
+    AskHoming,
     AskLimits,
     Estop,
     Hello,
@@ -76,7 +77,7 @@ def test_all_reachable_pairs_have_their_answer(bench):
     for state, command in product(REACHABLE, COMMANDS):
         bench.into(state, RESTING)
         answer = bench.ask(COMMANDS[command])
-        if command in (Ping, AskLimits, Hello):
+        if command in (Ping, AskLimits, AskHoming, Hello):
             assert not isinstance(answer, Refused | Ack | None), (state, command)
         elif command is Start and state is State.ARMED and isinstance(answer, Refused):
             assert answer.reason == Reason.START_TIME  # fixed, and the controller runs for long
@@ -170,5 +171,5 @@ def test_knots_beyond_the_joints_are_malformed(bench):
     thirteen = (0,) * 13
     assert isinstance(bench.ask(Arm()), Refused)
     bench.into(State.ARMED, ())
-    answer = bench.ask(Knot(0, thirteen, thirteen, thirteen))
+    answer = bench.ask(Knot(0, *[thirteen] * 4))
     assert isinstance(answer, Refused) and answer.reason == 2

@@ -50,9 +50,12 @@ def test_type_bytes_are_unique_and_stable():
     codes = {cls.__name__: KINDS[cls].code for cls in ALL}
     assert codes == {
         "Hello": 0x01, "AskLimits": 0x02, "Ping": 0x03, "Hold": 0x04, "Estop": 0x05,
+        "AskHoming": 0x06,
         "Arm": 0x10, "Knot": 0x11, "Start": 0x12, "End": 0x13, "Clear": 0x14,
+        "Home": 0x15, "Calibrate": 0x16,
         "Welcome": 0x40, "Limits": 0x41, "Pong": 0x42, "Ack": 0x43, "Nak": 0x44,
         "Refused": 0x45, "NoSession": 0x46, "Telemetry": 0x47, "Health": 0x48,
+        "HomingReport": 0x49,
     }  # fmt: skip
     assert len(CLASSES) == len(KINDS)
 
@@ -64,10 +67,10 @@ def test_type_bytes_are_unique_and_stable():
         (Estop(), ""),
         (Ping(1), "0100000000000000"),
         (Start(1_000_000), "40420f0000000000"),
-        (Knot(40_000, (1, -1), (2, -2), (3, -3)),
-         "409c00000000000001000000ffffffff02000000feffffff03000000fdffffff"),
-        (Welcome(1, 12, 3, 0, 250, 32, 7, 0x0102030405060708, b"fpcad-sim".ljust(16, b"\0")),
-         "010c0300fa002000070000000807060504030201" + b"fpcad-sim".hex() + "00" * 7),
+        (Knot(40_000, (1, -1), (2, -2), (3, -3), (4, -4)),
+         "409c00000000000001000000ffffffff02000000feffffff03000000fdffffff0400fcff"),
+        (Welcome(2, 12, 3, 0, 250, 32, 7, 0x0102030405060708, 1, 9, b"fpcad-sim".ljust(16, b"\0")),
+         "020c0300fa0020000700000008070605040302010109000000" + b"fpcad-sim".hex() + "00" * 7),
         (Telemetry(4000, 0, 5, 0, 1000, 31, 2, (9,), (10,)),
          "a00f00000000000000000000000000000500e8031f000200090000000a000000"),
     ],
@@ -91,7 +94,7 @@ def test_payloads_that_do_not_fit_are_refused(code, payload, complaint):
 
 
 @pytest.mark.parametrize(
-    "message", [Knot(0, (2**31,), (0,), (0,)), Knot(0, (0, 0), (0,), (0,)), Ping(-1)]
+    "message", [Knot(0, (2**31,), (0,), (0,), (0,)), Knot(0, (0, 0), (0,), (0,), (0,)), Ping(-1)]
 )
 def test_values_that_do_not_fit_are_refused(message):
     with pytest.raises(MalformedMessage):

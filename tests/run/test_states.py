@@ -11,12 +11,15 @@ from fpcad.run.knots import to_wire
 from fpcad.run.messages import (
     Ack,
     Arm,
+    AskHoming,
     AskLimits,
+    Calibrate,
     Clear,
     End,
     Estop,
     Hello,
     Hold,
+    Home,
     Knot,
     NoSession,
     Ping,
@@ -37,9 +40,9 @@ SESSION = 21
 KNOTS = to_wire(swing()).messages
 
 
-def knot(t_us, position=None, velocity=0, acceleration=0):
+def knot(t_us, position=None, velocity=0, acceleration=0, preload=(0,) * 12):
     at = position if position is not None else KNOTS[0].position_urad
-    return Knot(t_us, tuple(at), (velocity,) * 12, (acceleration,) * 12)
+    return Knot(t_us, tuple(at), (velocity,) * 12, (acceleration,) * 12, tuple(preload))
 
 
 COMMANDS = {
@@ -48,10 +51,13 @@ COMMANDS = {
     Start: Start(10_000_000),
     End: End(2),
     Clear: Clear(),
+    Home: Home(),
+    Calibrate: Calibrate((0,) * 12),
     Hold: Hold(),
     Estop: Estop(),
     Ping: Ping(5),
     AskLimits: AskLimits(),
+    AskHoming: AskHoming(),
     Hello: Hello(),
 }
 
@@ -92,7 +98,7 @@ class Bench:
 def test_each_pair_has_its_answer(state, command):
     bench = Bench().into(state)
     answer = bench.ask(COMMANDS[command])
-    if command in (Ping, AskLimits, Hello):
+    if command in (Ping, AskLimits, AskHoming, Hello):
         assert not isinstance(answer, Refused | Ack) and bench.device.state is state
     elif (state, command) in NEXT:
         assert isinstance(answer, Ack)
@@ -117,7 +123,7 @@ HARMFUL = [
     ([], knot(0, velocity=1), Reason.NOT_AT_REST, 0),
     ([], knot(0, acceleration=-1), Reason.NOT_AT_REST, 0),
     ([], knot(0, shifted(4, 52_000)), Reason.TOO_FAR_FROM_START, 4),
-    ([], Knot(0, (0,) * 11, (0,) * 11, (0,) * 11), Reason.MALFORMED, 0),
+    ([], Knot(0, *[(0,) * 11] * 4), Reason.MALFORMED, 0),
     ([knot(0)], knot(0), Reason.TIME_NOT_INCREASING, 0),
     ([knot(0), knot(40_000)], knot(39_999), Reason.TIME_NOT_INCREASING, 0),
     ([knot(0)], knot(40_000, shifted(7, 60_000)), Reason.VELOCITY_LIMIT, 7),

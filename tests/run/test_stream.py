@@ -152,7 +152,7 @@ def test_repeats_stay_below_twice_the_losses():
 @pytest.mark.parametrize(
     ("changes", "error", "words"),
     [
-        ({"protocol": 2}, ProtocolMismatch, "version 2, this program 1"),
+        ({"protocol": 3}, ProtocolMismatch, "version 3, this program 2"),
         ({"limits": hand_limits(configuration=b"x")}, ConfigurationMismatch, "transmission"),
         (
             {"limits": hand_limits(velocity_rad_s=np.full(12, 2.0))},

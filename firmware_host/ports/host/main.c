@@ -51,23 +51,15 @@ static bool read_setup(char *text)
 
 static void happen(const struct mishap *mishap)
 {
-    struct plant *plant = &process.device.plant;
     const char *kind = mishap->kind;
-    int joint = mishap->joint;
     if (strcmp(kind, "silence") == 0) {
         process.mute = true;
     } else if (strcmp(kind, "garbage") == 0) {
         process.noisy = true;
     } else if (strcmp(kind, "reset") == 0) {
         device_boot(&process.device, process.device.simulation.setup.boot_nonce + ++process.boots);
-    } else if (strcmp(kind, "jam") == 0) {
-        plant->jammed[joint] = true;
-    } else if (strcmp(kind, "death") == 0) {
-        plant->dead[joint] = true;
-    } else if (strcmp(kind, "stuck") == 0) {
-        plant->stuck[joint] = true;
-    } else if (strcmp(kind, "heat") == 0) {
-        plant->temperature_c[joint] = 90;
+    } else if (!device_mishap(&process.device, kind, (uint8_t)mishap->joint)) {
+        fprintf(stderr, "fpcad-firmware: unknown mishap %s\n", kind);
     }
 }
 

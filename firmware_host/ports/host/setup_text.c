@@ -49,6 +49,14 @@ static const char *take_gains(int32_t gains[MAX_JOINTS][MAX_GROUP], const struct
     return NULL;
 }
 
+static void take_reals(double *out, int count, char *word, char **rest)
+{
+    for (int i = 0; i < count && word != NULL; i++) {
+        out[i] = atof(word);
+        word = strtok_r(NULL, " ", rest);
+    }
+}
+
 static const char *take_other(struct simulation *out, const char *name, char **rest)
 {
     if (strcmp(name, "gain") == 0) {
@@ -62,10 +70,9 @@ static const char *take_other(struct simulation *out, const char *name, char **r
         return "a line without a value";
     }
     if (strcmp(name, "start_rad") == 0) {
-        for (int i = 0; i < out->setup.joints && word != NULL; i++) {
-            out->start_rad[i] = atof(word);
-            word = strtok_r(NULL, " ", rest);
-        }
+        take_reals(out->start_rad, out->setup.joints, word, rest);
+    } else if (strcmp(name, "zero_error") == 0) {
+        take_reals(out->zero_error, out->setup.joints, word, rest);
     } else if (strcmp(name, "clock_rate") == 0) {
         out->clock_rate = atof(word);
     } else if (strcmp(name, "encoder_step") == 0) {
@@ -87,7 +94,7 @@ static const char *take_other(struct simulation *out, const char *name, char **r
 static const char *take_line(struct simulation *out, char *line)
 {
     struct hand_setup *s = &out->setup;
-    struct joint_limits *l = &s->limits;
+    struct joint_limits *l = &s->limits, *m = &s->motor_limits;
     const struct target targets[] = {
         {"joints", &s->joints, 1, 1},
         {"homed", &s->homed, 1, 1},
@@ -101,10 +108,21 @@ static const char *take_line(struct simulation *out, char *line)
         {"tracking_error", &s->tracking_error, 4, 1},
         {"current_ma", &s->current_ma, 2, 1},
         {"temperature_c", &s->temperature_c, 1, 1},
+        {"hold_ma", &s->hold_ma, 2, 1},
         {"lower", l->lower, 4, s->joints},
         {"upper", l->upper, 4, s->joints},
         {"velocity", l->velocity, 4, s->joints},
         {"acceleration", l->acceleration, 4, s->joints},
+        {"motor_lower", m->lower, 4, s->joints},
+        {"motor_upper", m->upper, 4, s->joints},
+        {"motor_velocity", m->velocity, 4, s->joints},
+        {"motor_acceleration", m->acceleration, 4, s->joints},
+        {"homing_lower", s->homing.lower, 4, s->joints},
+        {"homing_upper", s->homing.upper, 4, s->joints},
+        {"homing_speed", &s->homing.speed, 4, 1},
+        {"homing_ma", &s->homing.current_ma, 2, 1},
+        {"preload_limit", &s->preload.limit, 4, 1},
+        {"preload_rate", &s->preload.rate, 4, 1},
         {"group", &s->transmission.group, 1, 1},
         {"offset", s->transmission.offset, 4, s->joints},
     };

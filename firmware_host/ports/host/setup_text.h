@@ -17,6 +17,7 @@ struct simulation {
     double start_rad[MAX_JOINTS];
     double clock_rate;
     double encoder_step;
+    double zero_error[MAX_JOINTS]; /* by which motors' zeros are off the design's [rad] */
     struct mishap mishaps[MAX_MISHAPS];
     int mishap_count;
     char record[4096]; /* file for what the joints did; empty: none */

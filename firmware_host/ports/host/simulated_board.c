@@ -13,6 +13,33 @@ static void send(void *context, const uint8_t *bytes, uint8_t count)
     device->output_used += count;
 }
 
+bool device_mishap(struct device *device, const char *kind, uint8_t number)
+{
+    struct plant *plant = &device->plant;
+    const struct {
+        const char *name;
+        bool *of_motor;
+    } switches[] = {
+        {"jam", plant->jammed}, {"death", plant->dead}, {"stuck", plant->stuck},
+        {"reversed", plant->reversed}};
+    for (size_t i = 0; i < sizeof switches / sizeof switches[0]; i++) {
+        if (strcmp(kind, switches[i].name) == 0) {
+            switches[i].of_motor[number] = true;
+            return true;
+        }
+    }
+    if (strcmp(kind, "heat") == 0) {
+        plant->temperature_c[number] = 90;
+    } else if (strcmp(kind, "wedge") == 0) {
+        plant->upper[number] -= 0.5;
+    } else if (strcmp(kind, "no_stop") == 0) {
+        plant->upper[number] += 100;
+    } else {
+        return false;
+    }
+    return true;
+}
+
 static void exchange(
     void *context, const struct motor_goals *goals, struct motor_readings *readings)
 {
@@ -42,6 +69,9 @@ const char *device_make(struct device *device, char *setup)
     device->board = (struct board){device, send, exchange, torque_off};
     plant_rest_at(&device->plant, &device->simulation.setup, device->simulation.start_rad);
     device->plant.encoder_step = device->simulation.encoder_step;
+    for (uint8_t i = 0; i < device->simulation.setup.joints; i++) {
+        plant_misplace_zero(&device->plant, i, device->simulation.zero_error[i]);
+    }
     device_boot(device, device->simulation.setup.boot_nonce);
     return NULL;
 }

@@ -55,6 +55,7 @@ void bench_look(const struct device *device, struct view *view)
         .torque_on = controller->torque_on,
     };
     memcpy(view->command, controller->follower.command, sizeof view->command);
+    memcpy(view->preload, controller->follower.preload, sizeof view->preload);
     memcpy(view->measured, controller->measured, sizeof view->measured);
     memcpy(view->position, device->plant.joint, sizeof view->position);
 }
@@ -64,14 +65,9 @@ void bench_set_state(struct device *device, uint8_t state)
     device->controller.state = state;
 }
 
-void bench_mishap(struct device *device, uint8_t kind, uint8_t motor)
+uint8_t bench_mishap(struct device *device, const char *kind, uint8_t number)
 {
-    bool *const kinds[] = {device->plant.jammed, device->plant.dead, device->plant.stuck};
-    if (kind == 3) {
-        device->plant.temperature_c[motor] = 90;
-    } else {
-        kinds[kind][motor] = true;
-    }
+    return device_mishap(device, kind, number);
 }
 
 void bench_keep_knots(struct device *device, uint16_t count)
@@ -114,11 +110,17 @@ void bench_quintic(const int64_t *rows, int32_t *results, uint32_t count)
 void bench_violation(
     const int64_t *rows, const int32_t *limits, uint8_t *reasons, uint32_t count)
 {
-    struct joint_limits own = {{limits[0]}, {limits[1]}, {limits[2]}, {limits[3]}};
+    const struct hand_setup setup = {
+        .joints = 1,
+        .limits = {{limits[0]}, {limits[1]}, {limits[2]}, {limits[3]}},
+        .motor_limits = {{limits[4]}, {limits[5]}, {limits[6]}, {limits[7]}},
+        .transmission = {.group = 1, .gain = {{limits[8]}}},
+    };
+    const int32_t offset = limits[9];
     for (uint32_t i = 0; i < count; i++, rows += 8) {
         struct knot from, to;
         knots_of(rows, &from, &to);
-        reasons[i] = segment_violation(&from, &to, 1, &own).reason;
+        reasons[i] = segment_violation(&from, &to, &setup, &offset).reason;
     }
 }
 
@@ -154,6 +156,10 @@ uint8_t bench_recode(uint8_t kind, const uint8_t *payload, uint8_t length, uint8
         RECODE(MESSAGE_NO_SESSION, no_session)
         RECODE(MESSAGE_TELEMETRY, telemetry)
         RECODE(MESSAGE_HEALTH, health)
+        RECODE(MESSAGE_ASK_HOMING, ask_homing)
+        RECODE(MESSAGE_HOME, home)
+        RECODE(MESSAGE_CALIBRATE, calibrate)
+        RECODE(MESSAGE_HOMING_REPORT, homing_report)
     default:
         return 255;
     }

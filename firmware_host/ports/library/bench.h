@@ -16,6 +16,7 @@ struct view {
     uint8_t cause;
     uint8_t torque_on;
     int32_t command[MAX_JOINTS];
+    int32_t preload[MAX_JOINTS];
     int32_t measured[MAX_JOINTS];
     double position[MAX_JOINTS];
 };
@@ -27,11 +28,13 @@ uint32_t bench_take_output(struct device *device, uint8_t *bytes, uint32_t room)
 void bench_tick(struct device *device);
 void bench_look(const struct device *device, struct view *view);
 void bench_set_state(struct device *device, uint8_t state);
-void bench_mishap(struct device *device, uint8_t kind, uint8_t motor);
+/* Kinds of device_mishap; 0 when there is no such kind. */
+uint8_t bench_mishap(struct device *device, const char *kind, uint8_t number);
 void bench_keep_knots(struct device *device, uint16_t count);
 /* Segments of one joint: rows t0 p v a t1 p v a elapsed; results: rows p v a. */
 void bench_quintic(const int64_t *rows, int32_t *results, uint32_t count);
-/* Segments as above without elapsed, against one joint's limits; results: reason. */
+/* Segments as above without elapsed, against one joint's limits (4 numbers), its motor's (4),
+   the gain between them and its zero; results: reason. */
 void bench_violation(
     const int64_t *rows, const int32_t *limits, uint8_t *reasons, uint32_t count);
 /* A payload decoded and encoded again; its length, or 255 when it is refused. */

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,11 +12,14 @@ from numpy.typing import NDArray
 from fpcad.run.codec import CLASSES, KINDS, MalformedMessage, decode, encode
 from fpcad.run.framing import PROTOCOL_VERSION, Frame, FrameReader, encode_frame
 from fpcad.run.knots import BUFFER_KNOTS
-from fpcad.run.limits import JointLimits, to_counts
+from fpcad.run.limits import COUNTS_PER_UNIT, JointLimits, from_counts, to_counts
 from fpcad.run.messages import (
+    PRELOAD_URAD,
     Ack,
     Arm,
+    AskHoming,
     AskLimits,
+    Calibrate,
     Cause,
     Clear,
     End,
@@ -23,6 +27,9 @@ from fpcad.run.messages import (
     Health,
     Hello,
     Hold,
+    Home,
+    HomingOutcome,
+    HomingReport,
     Knot,
     Nak,
     NoSession,
@@ -35,10 +42,13 @@ from fpcad.run.messages import (
     Telemetry,
     Welcome,
 )
+from fpcad.run.motor_limits import motor_limits_of
 from fpcad.run.sim.follower import PathFollower
+from fpcad.run.sim.homing import HomingTour
 from fpcad.run.sim.plant import Plant
 from fpcad.run.sim.sequence import DONE, Sequence
 from fpcad.run.sim.states import NEXT
+from fpcad.run.transmission import transmission_of
 
 TICK_HZ = 250
 _TELEMETRY_TICKS = 5
@@ -73,7 +83,17 @@ class Controller:
     def __init__(self, setup: ControllerSetup, plant: Plant) -> None:
         self._setup = setup
         self.plant = plant
-        self.follower = PathFollower(setup.limits, setup.buffer_knots, plant.position)
+        self._gears = transmission_of(setup.limits)
+        self.follower = PathFollower(
+            setup.limits,
+            setup.buffer_knots,
+            plant.position,
+            (self._gears, motor_limits_of(setup.limits)),
+        )
+        self.homed = setup.homed
+        self._offset_urad = to_counts(self._gears.offset_rad)
+        self._homing = HomingOutcome.NEVER
+        self._tour: HomingTour | None = None
         self.state = State.READY if setup.homed else State.IDLE
         self.cause = Cause.NONE
         self.time_us = 0
@@ -112,14 +132,34 @@ class Controller:
         if self.state is State.RUNNING and self.follower.rate == 0:
             self._set_off_if_due()
         self.follower.step(1 / TICK_HZ)
-        self.plant.step(
-            self.follower.command, self.follower.command_velocity, 1 / TICK_HZ, _PLANT_SUBSTEPS
-        )
+        goal = self.follower.command + self.follower.preload
+        if self.state is State.HOMING and self._tour is not None:
+            goal = self._tour.command
+            self._go_on_homing(self._tour)
+        self.plant.step(goal, self.follower.command_velocity, 1 / TICK_HZ, _PLANT_SUBSTEPS)
         self._supervise()
         if self._session and self.time_us * TICK_HZ // 1_000_000 % _TELEMETRY_TICKS == 0:
             self._send(self._telemetry())
         if self._session and self.time_us * TICK_HZ // 1_000_000 % _HEALTH_TICKS == 0:
             self._send(self._health())
+
+    def _go_on_homing(self, tour: HomingTour) -> None:
+        tour.step(1 / TICK_HZ)
+        if tour.done:
+            self._homing = HomingOutcome.FOUND
+            self._settle()
+            self.state = State.READY
+
+    def _settle(self) -> None:
+        """The zeros are known; the goal is where the joints are."""
+        self.homed, self.cause = True, Cause.NONE
+        self.follower.rest_at(self.plant.position)
+        self.plant.torque_on = True
+
+    def _stop_homing(self) -> None:
+        self._homing = HomingOutcome.STOPPED
+        self.plant.torque_on = False
+        self.follower.rest_at(self.plant.position)
 
     def _set_off_if_due(self) -> None:
         if self.time_us >= self._start_us:
@@ -129,10 +169,12 @@ class Controller:
         silent = self.time_us - self._heard_us > self._setup.silence_us
         if self.state is State.ARMED and silent:
             self.state = State.READY
+        if self.state is State.HOMING and silent:
+            self._stop_homing()
+            self.state, self.cause = State.IDLE, Cause.SILENCE
         if self.state is not State.RUNNING:
             return
-        error = np.abs(self.plant.position - self.follower.command).max()
-        if error > _TRACKING_LIMIT_RAD:
+        if self.follower.error(self.plant.position).max() > _TRACKING_LIMIT_RAD:
             self._stop(State.FAULT, Cause.TRACKING)
         elif self.follower.arrived:
             self.state = State.READY
@@ -145,15 +187,11 @@ class Controller:
         self.state, self.cause = state, cause
         self.follower.stop()
 
-    def _forget_path(self) -> None:
-        """Drop all knots; the joints keep the goal that they have."""
-        self.follower.rest_at(self.follower.command)
-
     def _clear(self) -> None:
         """Unlatch: the goal becomes where the joints are, then torque comes back."""
         self.cause = Cause.NONE
         self.follower.rest_at(self.plant.position)
-        self.plant.torque_on = True
+        self.plant.torque_on = self.homed
 
     def _on_frame(self, frame: Frame) -> None:
         cls = CLASSES.get(frame.kind)
@@ -187,6 +225,8 @@ class Controller:
             setup.buffer_knots,
             setup.boot_nonce,
             setup.limits.hash(),
+            int(self.homed),
+            zlib.crc32(encode(Calibrate(self._offset_urad))) if self.homed else 0,
             setup.build,
         )
         self._send(welcome, frame.session)
@@ -207,9 +247,13 @@ class Controller:
             self._send(Pong(msg.host_us, self.time_us))
         elif isinstance(msg, AskLimits):
             self._send(self._setup.limits.on_wire())
+        elif isinstance(msg, AskHoming):
+            self._send(self._homing_report())
         elif isinstance(msg, Hold):
+            if self.state is State.HOMING:
+                self._stop_homing()
             if NEXT[self.state, Hold] is not self.state:
-                self._stop(State.HOLD, Cause.HOST)
+                self._stop(NEXT[self.state, Hold], Cause.HOST)
             self._send(self._ack())
 
     def _perform(self, frame: Frame) -> Refused | None:
@@ -229,7 +273,7 @@ class Controller:
             return Reason.WRONG_STATE, 0
         refusal = self._act(msg)
         if refusal is None:
-            unhomed = following is State.READY and not self._setup.homed
+            unhomed = following is State.READY and not self.homed
             self.state = State.IDLE if unhomed else following
         return refusal
 
@@ -242,11 +286,33 @@ class Controller:
             reason = self.follower.end(msg.knots)
             return None if reason is None else (reason, 0)
         if isinstance(msg, Arm):
-            self._forget_path()
+            self.follower.forget()
+        if isinstance(msg, Home):
+            self.homed, self._homing = False, HomingOutcome.SEARCHING
+            self.plant.torque_on = True
+            self._tour = HomingTour(self._setup.limits, self.plant.position)
+        if isinstance(msg, Calibrate):
+            return self._calibrate(msg)
         if isinstance(msg, Clear):
             if self.follower.rate > 0:
                 return Reason.STILL_MOVING, 0
             self._clear()
+        return None
+
+    def _calibrate(self, msg: Calibrate) -> tuple[Reason, int] | None:
+        """Keep zeros that put each joint within its range, or a tenth of it beyond."""
+        limits, gears = self._setup.limits, self._gears
+        if len(msg.offset_urad) != len(limits.names):
+            return Reason.MALFORMED, 0
+        wrong = gears.offset_rad - from_counts(msg.offset_urad)
+        joint = self.plant.position + np.linalg.solve(gears.matrix, wrong)
+        margin = (limits.upper_rad - limits.lower_rad) / 10
+        outside = (joint < limits.lower_rad - margin) | (joint > limits.upper_rad + margin)
+        if outside.any():
+            return Reason.IMPLAUSIBLE, int(np.flatnonzero(outside)[0])
+        self._offset_urad = msg.offset_urad
+        self._homing = HomingOutcome.CALIBRATED
+        self._settle()
         return None
 
     def _schedule(self, device_us: int) -> tuple[Reason, int] | None:
@@ -260,6 +326,8 @@ class Controller:
 
     def _halt(self) -> None:
         """Emergency stop: torque off at once."""
+        if self.state is State.HOMING:
+            self._homing = HomingOutcome.STOPPED
         self.state, self.cause = State.ESTOP, Cause.HOST
         self.plant.torque_on = False
         self.follower.rest_at(self.plant.position)
@@ -288,6 +356,22 @@ class Controller:
             self._gaps & 0xFFFF,
             tuple(int(x) for x in self.plant.torque * _MA_PER_NM),
             (_AMBIENT_C,) * len(self.plant.position),
+            tuple(round(x * COUNTS_PER_UNIT / PRELOAD_URAD) for x in self.follower.preload),
+        )
+
+    def _homing_report(self) -> HomingReport:
+        limits = self._setup.limits.on_wire()
+        joints = len(limits.lower_urad)
+        found = joints if self._homing is HomingOutcome.FOUND else 0
+        if self._tour is not None and self._homing is not HomingOutcome.CALIBRATED:
+            found = joints if self._tour.done else self._tour.joint
+        nothing = (0,) * (joints - found)
+        return HomingReport(
+            self._homing,
+            0 if self._tour is None else self._tour.joint,
+            self._offset_urad,
+            limits.lower_urad[:found] + nothing,
+            limits.upper_urad[:found] + nothing,
         )
 
     def _send(self, msg: Any, session: int | None = None) -> None:

@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from fpcad.run.acceptance import first_violation
 from fpcad.run.knots import from_wire
-from fpcad.run.limits import JointLimits
-from fpcad.run.messages import Knot, Reason
+from fpcad.run.limits import COUNTS_PER_UNIT, JointLimits
+from fpcad.run.messages import PRELOAD_URAD, Knot, Reason
+from fpcad.run.motor_limits import MotorLimits, first_motor_violation
 from fpcad.run.quintic import evaluate_polynomial, segment_coefficients
+from fpcad.run.transmission import Transmission
 
 Array = NDArray[np.float64]
 
@@ -19,6 +21,10 @@ START_DISTANCE_RAD = np.radians(2.0)
 """Largest distance between the first knot and where the joints are."""
 _STARVING_US = 200_000
 """Path left at which waiting for more knots must end: enough to slow down on."""
+PRELOAD_LIMIT_RAD = 0.5
+PRELOAD_RATE_RAD_S = 1.0
+_PRELOAD_STEP_RAD = 0.002
+"""A preload that differs by less counts as unchanged."""
 SEGMENT_US = (3_000, 10_000_000)
 """Shortest and longest segment: a shorter one would be all rounding, a longer one does not fit the
 firmware's fixed point."""
@@ -29,13 +35,26 @@ _FASTEST_BRAKING = 20.0
 class PathFollower:
     """Queue of knots and the place on their path. Times in us, joints in rad."""
 
-    def __init__(self, limits: JointLimits, capacity: int, position: Array) -> None:
+    def __init__(
+        self,
+        limits: JointLimits,
+        capacity: int,
+        position: Array,
+        motors: tuple[Transmission, MotorLimits] | None = None,
+    ) -> None:
         self._limits = limits
+        self._motors = motors
         self._capacity = capacity
         self.rest_at(position)
 
     def rest_at(self, position: Array) -> None:
-        """Forget all knots; the command becomes `position` (n,) at rest."""
+        """Forget all knots; the command becomes `position` (n,) at rest, without preload."""
+        self.command = np.array(position, dtype=float)
+        self.preload = np.zeros_like(self.command)
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget all knots; command and preload stay as they are."""
         self._knots: deque[Knot] = deque()
         self._segment: Array | None = None
         self._accepted = 0
@@ -43,8 +62,13 @@ class PathFollower:
         self.rate = 0.0
         self.stopping = False
         self.ended = False
-        self.command = np.array(position, dtype=float)
         self.command_velocity = np.zeros_like(self.command)
+
+    def error(self, measured: Array, command: Array | None = None) -> Array:
+        """How far joints (n,) are from where they may be: from the command to the goal beyond it."""
+        ahead = measured - (self.command if command is None else command)
+        lower, upper = np.minimum(self.preload, 0), np.maximum(self.preload, 0)
+        return np.maximum(np.maximum(lower - ahead, ahead - upper), 0)
 
     def keep(self, count: int) -> None:
         """Lose all knots but the first ones, as a fault of memory would."""
@@ -117,6 +141,10 @@ class PathFollower:
         self.rate = rate
         position, velocity, _ = self._sample()
         self.command, self.command_velocity = position, velocity * rate
+        first, second = self._knots[0], self._knots[1]
+        share = min((self._path_us - first.t_us) / (second.t_us - first.t_us), 1.0)
+        start, end = _preload(first), _preload(second)
+        self.preload = start + (end - start) * share
         if self.arrived:
             self.rate = 0.0
 
@@ -164,10 +192,10 @@ class PathFollower:
             return Reason.TIME_NOT_INCREASING, 0
         if not _at_rest(knot):
             return Reason.NOT_AT_REST, 0
-        distance = np.abs(np.array(knot.position_urad) / 1e6 - present)
+        distance = self.error(present, np.array(knot.position_urad) / 1e6)
         if distance.max() > START_DISTANCE_RAD:
             return Reason.TOO_FAR_FROM_START, int(distance.argmax())
-        return None
+        return _preload_refusal(knot, self.preload, _PRELOAD_STEP_RAD)
 
     def _next_refusal(self, knot: Knot) -> tuple[Reason, int] | None:
         if knot.t_us <= self._knots[-1].t_us:
@@ -176,8 +204,26 @@ class PathFollower:
             return Reason.LATE, 0
         if not SEGMENT_US[0] <= knot.t_us - self._knots[-1].t_us <= SEGMENT_US[1]:
             return Reason.SEGMENT_TIME, 0
-        violation = first_violation(from_wire((self._knots[-1], knot)), self._limits)
-        return None if violation is None else (violation.reason, violation.joint)
+        segment = from_wire((self._knots[-1], knot))
+        violation = first_violation(segment, self._limits)
+        if violation is None and self._motors is not None:
+            violation = first_motor_violation(segment, *self._motors)
+        if violation is not None:
+            return violation.reason, violation.joint
+        seconds = (knot.t_us - self._knots[-1].t_us) / 1e6
+        change = PRELOAD_RATE_RAD_S * seconds + PRELOAD_URAD / COUNTS_PER_UNIT
+        return _preload_refusal(knot, _preload(self._knots[-1]), change)
+
+
+def _preload(knot: Knot) -> Array:
+    return np.array(knot.preload_20urad) * (PRELOAD_URAD / COUNTS_PER_UNIT)
+
+
+def _preload_refusal(knot: Knot, before: Array, change_rad: float) -> tuple[Reason, int] | None:
+    """Whether the preload keeps to its bound and comes no faster than `change_rad` from `before`."""
+    preload = _preload(knot)
+    faults = (np.abs(preload) > PRELOAD_LIMIT_RAD) | (np.abs(preload - before) > change_rad)
+    return (Reason.PRELOAD_LIMIT, int(np.flatnonzero(faults)[0])) if faults.any() else None
 
 
 def _at_rest(knot: Knot) -> bool:
