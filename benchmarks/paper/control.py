@@ -22,6 +22,7 @@ from benchmarks.paper.control_states import (
 )
 from fpcad.model.equilibrium import least_torque
 from fpcad.model.pose import HAND_SIZE
+from fpcad.model.statics import cone_facets
 from fpcad.pipeline.sample import read_candidates
 from fpcad.pipeline.stage import Build
 from fpcad.sample.space import DesignSpace, design_space
@@ -125,7 +126,8 @@ def directions_held(bench: Workbench, pose: str, design: np.ndarray, y: np.ndarr
     cap, force = bench.spec.statics.max_joint_torque_nmm, bench.spec.poses[pose].tip_force_n
     values = bench.kernels[pose].statics(design, y[:HAND_SIZE], 0.0, y[HAND_SIZE:])
     wrench, torque, tip = (value.copy() for value in values)
-    ways = (least_torque(wrench, torque, sign * force * tip, cap) for sign in (1.0, -1.0))
+    facets = cone_facets(bench.spec.statics)
+    ways = (least_torque(wrench, torque, sign * force * tip, cap, facets) for sign in (1.0, -1.0))
     return sum(way is not None for way in ways)
 
 

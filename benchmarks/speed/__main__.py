@@ -16,6 +16,7 @@ from benchmarks.speed.report import Figure, figure, print_figures, write_figures
 from benchmarks.speed.tasks import grown_tree, neighbours, workbench
 from benchmarks.speed.wielding import (
     Traced,
+    along_edges,
     highs_greatest_load,
     highs_least_torque,
     own_trace,
@@ -23,6 +24,7 @@ from benchmarks.speed.wielding import (
 )
 from fpcad.model.equilibrium import greatest_load, least_torque
 from fpcad.model.pose import HAND_SIZE
+from fpcad.model.statics import cone_facets
 from fpcad.sample.rrt import Call, Proposal, grow
 from fpcad.sample.space import design_space
 from fpcad.sample.tree import Candidate, Tree
@@ -98,19 +100,25 @@ def programs(bench: Workbench, candidates: list[Candidate]) -> Iterator[Figure]:
     """Both linear programs on the same states of real paths, a block of states at a time."""
     states = [pair for candidate in candidates for pair in _states(bench, candidate)]
 
+    facets = cone_facets(bench.spec.statics)
+
     def own_least(*arguments: Any) -> float | None:
-        held = least_torque(*arguments)
+        held = least_torque(*arguments, facets)
         return None if held is None else held.largest_torque_nmm
+
+    def own_greatest(*arguments: Any) -> float:
+        return greatest_load(*arguments, facets)
 
     contests = {
         "least torque": ([least for least, _ in states], own_least, highs_least_torque),
-        "greatest tip force": ([most for _, most in states], greatest_load, highs_greatest_load),
+        "greatest tip force": ([most for _, most in states], own_greatest, highs_greatest_load),
     }
     for name, (arguments, ours, theirs) in contests.items():
+        along = [(along_edges(W), along_edges(T), *rest) for W, T, *rest in arguments]
         seconds, worst = np.zeros(2), 0.0
         for start in range(0, len(arguments), BLOCK):
             mine, own_seconds = _timed(ours, arguments[start : start + BLOCK])
-            others, other_seconds = _timed(theirs, arguments[start : start + BLOCK])
+            others, other_seconds = _timed(theirs, along[start : start + BLOCK])
             seconds += own_seconds, other_seconds
             for a, b in zip(mine, others, strict=True):
                 if a is None or b is None:
@@ -137,10 +145,10 @@ def _states(bench: Workbench, candidate: Candidate) -> Iterator[tuple[tuple, tup
             x = np.concatenate([path.joints_rad[i].ravel(), path.contacts[i].ravel()])
             angle = float(path.tool_angle_rad[i])
             W, T, tip = (v.copy() for v in bench.kernels[pose].statics(design, hand, angle, x))
-            pull = tip if angle >= 0 else -tip
+            pull, motors = (tip if angle >= 0 else -tip), load.motor_per_joint_torque @ T
             yield (
                 (W, T, load.tip_force_n * pull, load.max_joint_torque_nmm),
-                (W, load.motor_per_joint_torque @ T, pull, load.motor_torque_nmm),
+                (W, motors, pull, load.motor_torque_nmm),
             )
 
 

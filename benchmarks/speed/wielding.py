@@ -12,17 +12,22 @@ from scipy import sparse
 from scipy.optimize import linprog
 
 from fpcad.model.pose import HAND_SIZE
+from fpcad.model.statics import cone_edges
 from fpcad.sample.space import design_space
 from fpcad.sample.tree import Candidate
 from fpcad.solve.attempt import Workbench
 from fpcad.solve.qp import QpSolution, QuadraticProgram
+from fpcad.spec.process import Statics
 from fpcad.units import DEG_PER_RAD
 from fpcad.wield.evaluate import build_load, build_mechanism, build_stepping
 from fpcad.wield.integrate import advance
+from fpcad.wield.load import Load
 from fpcad.wield.rates import End, Mechanism
-from fpcad.wield.trace import Load, Stepping, trace
+from fpcad.wield.trace import Stepping, trace
 
 Array = NDArray[np.float64]
+EDGES = cone_edges(Statics())
+"""Of the friction pyramids; friction itself is in the axes."""
 
 
 class WarmOsqp:
@@ -134,7 +139,8 @@ def _problem(
 
 def _torque(m: Mechanism, load: Load, turn: float, x: Array, direction: float) -> float | None:
     """Least torque by linprog; the tip force too, since the own evaluation does both."""
-    wrench, torque, tip = (v.copy() for v in m.kernels.statics(m.design, m.hand, turn, x))
+    axes, torques, tip = (v.copy() for v in m.kernels.statics(m.design, m.hand, turn, x))
+    wrench, torque = along_edges(axes), along_edges(torques)
     pull = direction * tip
     least = highs_least_torque(wrench, torque, load.tip_force_n * pull, load.max_joint_torque_nmm)
     if least is not None:
@@ -144,8 +150,13 @@ def _torque(m: Mechanism, load: Load, turn: float, x: Array, direction: float) -
     return least
 
 
+def along_edges(forces: Array) -> Array:
+    """What unit forces along the cones' edges (k, n m) do, from those along their axes (k, 3n)."""
+    return forces @ np.kron(np.eye(forces.shape[1] // 3), EDGES)
+
+
 def highs_least_torque(wrench: Array, torque: Array, load: Array, cap: float) -> float | None:
-    """The program of :func:`fpcad.model.equilibrium.least_torque` by SciPy's HiGHS."""
+    """The program of :func:`fpcad.model.equilibrium.least_torque` by HiGHS, along the cones' edges."""
     joints, edges = torque.shape
     column = np.ones((joints, 1))
     rows = np.vstack([np.hstack([torque, -column]), np.hstack([-torque, -column])])
@@ -162,7 +173,7 @@ def highs_least_torque(wrench: Array, torque: Array, load: Array, cap: float) ->
 
 
 def highs_greatest_load(wrench: Array, torque: Array, load: Array, limit: Array) -> float:
-    """The program of :func:`fpcad.model.equilibrium.greatest_load` by SciPy's HiGHS."""
+    """The program of :func:`fpcad.model.equilibrium.greatest_load` by HiGHS, along the cones' edges."""
     motors, edges = torque.shape
     free = np.zeros((motors, 1))
     result = linprog(

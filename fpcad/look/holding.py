@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from fpcad.model.equilibrium import least_torque
 from fpcad.model.pose import PoseModel
+from fpcad.model.statics import cone_facets
 from fpcad.spec.schema import Spec
 
 Array = NDArray[np.float64]
@@ -20,12 +21,12 @@ class HoldingForces:
 
     def __init__(self, spec: Spec, pose: str) -> None:
         model = PoseModel(spec, pose)
-        edges = model.cone_edges()
+        forces = model.cone_axes()
         inputs = [model.d, model.h, model.turn, ca.vertcat(model.u, model.a)]
-        outputs = [edges.wrench, edges.torque, model.tip_wrench()]
+        outputs = [forces.wrench, forces.torque, model.tip_wrench()]
         self._statics = ca.Function("statics", inputs, outputs)
         self.layout, self._load_n = model.layout, spec.poses[pose].tip_force_n
-        self._cap, self._facets = spec.statics.max_joint_torque_nmm, spec.statics.cone_facets
+        self._cap, self._facets = spec.statics.max_joint_torque_nmm, cone_facets(spec.statics)
 
     def at(self, design: Array, hand: Array, turn: Array, x: Array, pull: Array) -> Array:
         """Forces [N] of the fingers on the tool, in O.
@@ -44,10 +45,10 @@ class HoldingForces:
         forces = np.full((len(turn), n, 3), np.nan)
         for row, (wrench, torque, tip) in enumerate(self._evaluated(design, hand, turn, x)):
             load = pull[row] * self._load_n * tip
-            holding = least_torque(wrench, torque, load, self._cap)
+            holding = least_torque(wrench, torque, load, self._cap, self._facets)
             if holding is not None:
                 along = wrench[:3].T * holding.forces_n[:, None]
-                forces[row] = along.reshape(n, self._facets, 3).sum(axis=1)
+                forces[row] = along.reshape(n, 3, 3).sum(axis=1)
         return forces
 
     def _evaluated(

@@ -16,6 +16,7 @@ from fpcad.model.compile import (
     load_functions,
 )
 from fpcad.model.pose import HAND_SIZE, PoseModel, StateLayout
+from fpcad.model.programs import PATH_FUNCTIONS, PathFunctions
 from fpcad.spec.schema import Spec
 
 
@@ -33,9 +34,11 @@ class PoseKernels:
     rates: Kernel
     """(d, h, turn, x) -> motions that are affine in the joint rates; see :func:`rates_function`."""
     statics: Kernel
-    """(d, h, turn, x) -> edge wrenches (6, n m), edge torques (n_u, n m), tip wrench (6,)."""
+    """(d, h, turn, x) -> wrenches (6, 3n) and torques (n_u, 3n) of unit contact forces, tip wrench (6,)."""
     residual: Kernel
     """(d, turn, y) -> paper's six (6n,), opposition (n,), skin margins (2n,), clearances."""
+    path: PathFunctions
+    """The programs that a path is traced by, for graphs to call."""
 
 
 def load_kernels(spec: Spec, pose: str, cache: Path) -> PoseKernels:
@@ -49,16 +52,18 @@ def load_kernels(spec: Spec, pose: str, cache: Path) -> PoseKernels:
         "statics": partial(statics_function, model),
         "residual": partial(residual_function, model),
     }
-    functions = load_functions(builders, key, cache)
-    kernels = {name: Kernel(function) for name, function in functions.items()}
-    return PoseKernels(layout=model.layout, **kernels)
+    of_paths = {name: partial(build, model) for name, build in PATH_FUNCTIONS.items()}
+    functions = load_functions(builders | of_paths, key, cache)
+    kernels = {name: Kernel(functions[name]) for name in builders}
+    path = PathFunctions(**{name: functions[name] for name in of_paths})
+    return PoseKernels(layout=model.layout, **kernels, path=path)
 
 
 def constraints_function(model: PoseModel) -> ca.Function:
     """Cost, constraint rows and margins, with Jacobians in the state y and the tool angle."""
     variables = ca.vertcat(model.y, model.turn)
     outputs = []
-    for expression in (model.cost(), model.rows(), _margins(model)):
+    for expression in (model.cost(), model.rows(), model.margins()):
         outputs += [expression, jacobian_transposed(expression, variables)]
     return _state_function("constraints", model, outputs)
 
@@ -84,9 +89,9 @@ def rates_function(model: PoseModel) -> ca.Function:
 
 
 def statics_function(model: PoseModel) -> ca.Function:
-    """Friction cones' edges and the tip force of 1 N, as wrenches and joint torques."""
-    edges = model.cone_edges()
-    return _path_function("statics", model, [edges.wrench.T, edges.torque.T, model.tip_wrench()])
+    """Unit forces along the friction cones' axes and at the tip, as wrenches and joint torques."""
+    forces = model.cone_axes()
+    return _path_function("statics", model, [forces.wrench.T, forces.torque.T, model.tip_wrench()])
 
 
 def residual_function(model: PoseModel) -> ca.Function:
@@ -98,13 +103,6 @@ def residual_function(model: PoseModel) -> ca.Function:
         model.clearances(),
     ]
     return _state_function("residual", model, outputs)
-
-
-def _margins(model: PoseModel) -> ca.SX:
-    """All margins >= 0; the opposition counts in mm like a deviation of normals."""
-    return ca.vertcat(
-        model.opposition_margin() * 10.0, model.skin_margin(), model.collision_margin()
-    )
 
 
 def _state_function(name: str, model: PoseModel, outputs: list[ca.SX]) -> ca.Function:

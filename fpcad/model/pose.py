@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from fpcad.model.collision import Pair, collision_pairs, link_bodies
 from fpcad.model.contact import (
+    NORMAL_SCALE_MM,
     ContactRates,
     RelativeMotion,
     contact_rates,
@@ -22,7 +23,7 @@ from fpcad.model.cost import cost_residuals
 from fpcad.model.distance import Segment
 from fpcad.model.frames import Expr, Frame, rot_rpy
 from fpcad.model.hand import LinkShape, hand_template
-from fpcad.model.statics import ConeEdges, contact_edges, tip_wrench
+from fpcad.model.statics import UnitForces, cone_axes, tip_wrench, unit_forces
 from fpcad.model.surfaces import SurfacePoint, capsule_point, cylinder_point, turned_tool
 from fpcad.spec.schema import Spec
 from fpcad.units import RAD_PER_DEG
@@ -179,6 +180,11 @@ class PoseModel:
         """Smooth margins [mm] of all collision pairs, >= 0."""
         return ca.vertcat(*[pair.margin() for pair in self.collision_pairs])
 
+    def margins(self) -> Expr:
+        """All margins >= 0; the opposition counts in mm like a deviation of normals."""
+        opposition = NORMAL_SCALE_MM * self.opposition_margin()
+        return ca.vertcat(opposition, self.skin_margin(), self.collision_margin())
+
     def clearances(self) -> Expr:
         """Gaps [mm] of all collision pairs."""
         return ca.vertcat(*[pair.clearance() for pair in self.collision_pairs])
@@ -214,13 +220,13 @@ class PoseModel:
             contact_rates(t, f, m) for (t, f), m in zip(self.contact_pairs, motions, strict=True)
         ]
 
-    def cone_edges(self) -> ConeEdges:
-        """Wrenches (6, n m) and joint torques (n_u, n m) of all friction cones' edges."""
+    def cone_axes(self) -> UnitForces:
+        """Wrenches (6, 3 n) and joint torques (n_u, 3 n) of normal forces and friction."""
         parts = [
-            contact_edges(self.spec.statics, tool, ca.jacobian(finger.p, self.u))
+            unit_forces(cone_axes(self.spec.statics, tool), tool, ca.jacobian(finger.p, self.u))
             for tool, finger in self.contact_pairs
         ]
-        return ConeEdges(
+        return UnitForces(
             ca.horzcat(*[p.wrench for p in parts]), ca.horzcat(*[p.torque for p in parts])
         )
 

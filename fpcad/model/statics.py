@@ -1,4 +1,4 @@
-"""Coulomb statics of a held tool: wrenches and joint torques of the friction cones' edges."""
+"""Coulomb statics of a held tool: wrenches and joint torques of forces in the friction cones."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from fpcad.model.frames import Expr, Frame
 from fpcad.model.surfaces import SurfacePoint, turning_axis
@@ -13,32 +14,45 @@ from fpcad.spec.pose import Turning
 from fpcad.spec.process import Statics
 from fpcad.spec.tool import CylinderTool
 
-
-class ConeEdges(NamedTuple):
-    """Effect of unit forces along the edges of all friction cones; n contacts, m facets."""
-
-    wrench: Expr  # (6, n m): force [-] over moment about O [mm] on the tool
-    torque: Expr  # (n_joints, n m): joint torque [mm] that makes the finger push so
+Array = NDArray[np.float64]
 
 
-def cone_edges(statics: Statics, tool: SurfacePoint) -> Expr:
-    """Edges (3, m) of the pyramid inside the friction cone at one contact; normal part is 1.
+class UnitForces(NamedTuple):
+    """Effect of unit contact forces along k directions."""
 
-    A finger pushes against the tool's outward normal.
+    wrench: Expr  # (6, k): force [-] over moment about O [mm] on the tool
+    torque: Expr  # (n_joints, k): joint torque [mm] that makes the finger push so
+
+
+def cone_axes(statics: Statics, tool: SurfacePoint) -> Expr:
+    """Directions (3, 3) of one contact's force: normal, and friction along both tangents.
+
+    A finger pushes against the tool's outward normal. Friction counts in units of its coefficient,
+    so that the cone is the unit circle about a normal part of 1.
     """
+    return ca.horzcat(-tool.normal, statics.friction * tool.tangents)
+
+
+def cone_edges(statics: Statics) -> Array:
+    """Edges (3, m), in :func:`cone_axes`, of the pyramid inside the friction cone."""
     angles = 2 * np.pi * np.arange(statics.cone_facets) / statics.cone_facets
-    directions = ca.DM(np.vstack([np.cos(angles), np.sin(angles)]))
-    normals = ca.repmat(-tool.normal, 1, statics.cone_facets)
-    return normals + statics.friction * (tool.tangents @ directions)
+    return np.vstack([np.ones_like(angles), np.cos(angles), np.sin(angles)])
 
 
-def contact_edges(statics: Statics, tool: SurfacePoint, jacobian: Expr) -> ConeEdges:
-    """Wrenches and torques of one contact's edges.
+def cone_facets(statics: Statics) -> Array:
+    """Rows (m, 3) that are <= 0 for a force, in :func:`cone_axes`, inside that pyramid."""
+    middles = 2 * np.pi * (np.arange(statics.cone_facets) + 0.5) / statics.cone_facets
+    apothem = np.full(statics.cone_facets, np.cos(np.pi / statics.cone_facets))
+    return np.column_stack([-apothem, np.cos(middles), np.sin(middles)])
+
+
+def unit_forces(directions: Expr, tool: SurfacePoint, jacobian: Expr) -> UnitForces:
+    """Wrenches and torques of unit forces along directions (3, k) at one contact.
 
     `jacobian` (3, n_joints) [mm/rad] is that of the finger's material point, so that tau = J' f.
     """
-    edges = cone_edges(statics, tool)
-    return ConeEdges(ca.vertcat(edges, ca.skew(tool.p) @ edges), jacobian.T @ edges)
+    moments = ca.skew(tool.p) @ directions
+    return UnitForces(ca.vertcat(directions, moments), jacobian.T @ directions)
 
 
 def tip_wrench(tool: CylinderTool, turning: Turning, turned: Frame) -> Expr:

@@ -13,6 +13,7 @@ from fpcad.model.equilibrium import least_torque
 from fpcad.model.hand import HandTemplate, hand_template
 from fpcad.model.kernels import PoseKernels, load_kernels
 from fpcad.model.pose import HAND_SIZE
+from fpcad.model.statics import cone_facets
 from fpcad.solve.ipopt import build_ipopt, solve_ipopt
 from fpcad.solve.measure import Residual, measure
 from fpcad.solve.program import build_pose_program, pose_bounds
@@ -85,10 +86,9 @@ def held(bench: Workbench, pose: str, design: Array, y: Array) -> bool:
     """Whether the tool is in equilibrium with the tip force against either turning direction."""
     statics, force = bench.spec.statics, bench.spec.poses[pose].tip_force_n
     wrench, torque, tip = bench.kernels[pose].statics(design, y[:HAND_SIZE], 0.0, y[HAND_SIZE:])
-    # Edges come transposed: one row for each, see Kernel.
+    cap, facets = statics.max_joint_torque_nmm, cone_facets(statics)
     return all(
-        least_torque(wrench, torque, sign * force * tip, statics.max_joint_torque_nmm)
-        for sign in (1.0, -1.0)
+        least_torque(wrench, torque, sign * force * tip, cap, facets) for sign in (1.0, -1.0)
     )
 
 

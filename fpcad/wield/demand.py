@@ -52,7 +52,7 @@ def torque_demand(bench: Workbench, pose: str, design: Array, path: WieldingPath
     torques = []
     for direction in (1.0, -1.0):
         pull = direction * load.tip_force_n * tip
-        holding = least_torque(wrench, torque, pull, load.max_joint_torque_nmm)
+        holding = least_torque(wrench, torque, pull, load.max_joint_torque_nmm, load.cone_facets)
         if holding is not None:
             torques.append(holding.torque_nmm)
     at_joints = np.abs(torques)

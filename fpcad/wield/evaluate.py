@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.errors import MakeError
+from fpcad.model.compile import Kernel
 from fpcad.model.pose import HAND_SIZE
+from fpcad.model.statics import cone_facets
 from fpcad.model.transmission import hand_transmission
 from fpcad.solve.attempt import Workbench
 from fpcad.solve.program import path_bounds
@@ -20,11 +22,12 @@ from fpcad.spec.templates import TEMPLATES
 from fpcad.units import NM_PER_NMM, RAD_PER_DEG
 from fpcad.wield.graph import GraphSettings, step_graph
 from fpcad.wield.integrate import PROJECTION, project
+from fpcad.wield.load import Load
 from fpcad.wield.metrics import PathMetrics, path_metrics
 from fpcad.wield.path import WieldingPath, join_traces
 from fpcad.wield.rates import Mechanism
 from fpcad.wield.touch import nearest_contacts
-from fpcad.wield.trace import Load, Stepping, trace
+from fpcad.wield.trace import Stepping, trace
 
 Array = NDArray[np.float64]
 
@@ -88,19 +91,37 @@ def contact_projector(
 def build_mechanism(bench: Workbench, pose: str, design: Array, y: Array) -> Mechanism:
     """The mechanism that tool and hand form at a pose with state y."""
     settings, kernels = bench.spec.path, bench.kernels[pose]
-    bounds = path_bounds(bench.spec, pose, kernels.layout)
-    weight, fastest = settings.rate_weight, settings.max_joint_rate
-    graph = None
-    if settings.qp == "daqp":
-        lower, upper = (tuple(bound.tolist()) for bound in bounds)
-        trust = PROJECTION.max_trust
-        graph = step_graph(kernels, GraphSettings(lower, upper, weight, fastest, trust))
-    qp = BACKENDS[settings.qp]
-    return Mechanism(kernels, bounds, design, y[:HAND_SIZE], weight, fastest, qp, graph)
+    return Mechanism(
+        kernels=kernels,
+        bounds=path_bounds(bench.spec, pose, kernels.layout),
+        design=design,
+        hand=y[:HAND_SIZE],
+        rate_weight=settings.rate_weight,
+        max_joint_rate=settings.max_joint_rate,
+        qp=BACKENDS[settings.qp],
+        graph=build_graph(bench, pose) if settings.qp == "daqp" else None,
+    )
+
+
+def build_graph(bench: Workbench, pose: str) -> Kernel:
+    """The graph that steps along paths from a pose; built once, whatever the hand."""
+    settings, kernels = bench.spec.path, bench.kernels[pose]
+    lower, upper = path_bounds(bench.spec, pose, kernels.layout)
+    return step_graph(
+        kernels,
+        GraphSettings(
+            lower=tuple(lower.tolist()),
+            upper=tuple(upper.tolist()),
+            rate_weight=settings.rate_weight,
+            max_joint_rate=settings.max_joint_rate,
+            max_correction=PROJECTION.max_trust,
+            contact_tolerance=PROJECTION.feasibility,
+        ),
+    )
 
 
 def build_load(spec: Spec, pose: str) -> Load:
-    """Tip force, torque cap and motors of a pose."""
+    """Tip force, torque cap, motors and friction of a pose."""
     A = hand_transmission(spec.motors.transmission, len(TEMPLATES[spec.hand.template].fingers))
     limit = motor(spec.motors.type).continuous_torque_nm / NM_PER_NMM
     return Load(
@@ -108,6 +129,7 @@ def build_load(spec: Spec, pose: str) -> Load:
         max_joint_torque_nmm=spec.statics.max_joint_torque_nmm,
         motor_per_joint_torque=np.asarray(np.linalg.inv(A.T), dtype=np.float64),
         motor_torque_nmm=np.full(len(A), limit),
+        cone_facets=cone_facets(spec.statics),
     )
 
 

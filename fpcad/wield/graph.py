@@ -1,22 +1,22 @@
-"""The whole step as one graph: four rate programs, Runge-Kutta, and the projection onto contact.
+"""The whole step as one graph: rate programs, Runge-Kutta, projection, and what holds the tool.
 
-It computes what :mod:`fpcad.wield.integrate` says, without returning to Python in between: 0.14 ms
-a step against 0.5 ms. Where one of its quadratic programs has no solution, the plain functions
-find out why; they are the reference that it is tested against.
+It computes what :mod:`fpcad.wield.integrate` and :mod:`fpcad.model.equilibrium` say, without
+returning to Python in between. Where one of its programs has no solution, the plain functions find
+out why; they are the reference that it is tested against.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.model.compile import Kernel
-from fpcad.model.contact import NORMAL_SCALE_MM
+from fpcad.model.equilibrium import TORQUE_UNIT_NMM
 from fpcad.model.kernels import PoseKernels
 from fpcad.model.pose import HAND_SIZE
 
@@ -24,6 +24,11 @@ Array = NDArray[np.float64]
 MX = ca.MX
 
 QP_OPTIONS = {"error_on_fail": False, "daqp": {"primal_tol": 1e-11}}
+LP_OPTIONS = {
+    "error_on_fail": False,
+    "daqp": {"primal_tol": 1e-11, "dual_tol": 1e-14, "eps_prox": 1e-4},
+}
+"""A linear program is solved as a few quadratic ones, each nearest to the last one's solution."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +40,7 @@ class GraphSettings:
     rate_weight: float
     max_joint_rate: float
     max_correction: float  # longest projection step, in scaled variables
+    contact_tolerance: float  # violation [mm] up to which no further projection is needed
 
 
 class GraphStep(NamedTuple):
@@ -43,115 +49,172 @@ class GraphStep(NamedTuple):
     x: Array  # (n_u + 4n,)
     sliding: Array  # (n,) [mm]
     least_determinant: Array  # (1,) of the relative curvatures at the four stages
-    violation: Array  # (1,) of rows and margins after the projection
+    violation: Array  # (1,) of rows and margins after the projection [mm]
     unmet: Array  # (1,) largest violation of a rate program's constraints [rad/s, mm/s]
+    torque_nmm: Array  # (1,) least largest joint torque against the tip force
+    tip_force_n: Array  # (1,) largest tip force that the motors hold
+    unheld: Array  # (1,) largest violation of both programs of equilibrium [N, 10 N mm, N m]
 
 
 @cache
 def step_graph(kernels: PoseKernels, settings: GraphSettings) -> Kernel:
-    """(d, h, turn, x, direction, dt) -> :class:`GraphStep`'s fields."""
-    layout = kernels.layout
-    d, h = MX.sym("d", kernels.constraints.function.size1_in(0)), MX.sym("h", HAND_SIZE)
-    x = MX.sym("x", layout.size - HAND_SIZE)
+    """(d, h, turn, x, direction, dt, *values of a Load) -> :class:`GraphStep`'s fields.
+
+    A load's matrix goes in row by row, as one vector.
+    """
+    program = kernels.path.rate_program
+    d, h = MX.sym("d", program.size1_in(0)), MX.sym("h", HAND_SIZE)
+    x = MX.sym("x", kernels.layout.size - HAND_SIZE)
     turn, direction, dt = MX.sym("turn"), MX.sym("direction"), MX.sym("dt")
-    rates = _rates_function(kernels, settings)
-    stages: list[Any] = []
+    n_u = kernels.layout.n_u
+    load = MX.sym("force"), MX.sym("cap"), MX.sym("motors", n_u * n_u), MX.sym("limit", n_u)
+    stages: list[tuple[MX, ...]] = []
     for fraction in (0.0, 0.5, 0.5, 1.0):
         at = x + fraction * dt * stages[-1][0] if stages else x
-        stages.append(rates(d, h, turn + direction * fraction * dt, at, direction, dt))
-    weights = [dt / 6, dt / 3, dt / 3, dt / 6]
-    moved = x + sum(w * stage[0] for w, stage in zip(weights, stages, strict=True))
-    sliding = sum(w * stage[1] for w, stage in zip(weights, stages, strict=True))
-    least = ca.mmin(ca.vertcat(*[stage[2] for stage in stages]))
-    projected, violation = _projected(kernels, settings, (d, h, turn + direction * dt, moved))
-    unmet = ca.mmax(ca.vertcat(*[stage[3] for stage in stages]))
-    outputs = [projected, sliding, least, violation, unmet]
-    return Kernel(ca.Function("step", [d, h, turn, x, direction, dt], outputs))
+        state = d, h, turn + direction * fraction * dt, at
+        stages.append(_rates(kernels, settings, state, direction, dt))
+    rates, sliding, determinants, unmet = zip(*stages, strict=True)
+    moved = x + dt / 6 * _simpson(rates)
+    reached = d, h, turn + direction * dt
+    projected, violation = _projected(kernels, settings, (*reached, moved))
+    outputs = [
+        projected,
+        dt / 6 * _simpson(sliding),
+        ca.mmin(ca.vertcat(*determinants)),
+        violation,
+        ca.mmax(ca.vertcat(*unmet)),
+        *_held(kernels, (*reached, projected), direction, load),
+    ]
+    return Kernel(ca.Function("step", [d, h, turn, x, direction, dt, *load], outputs))
 
 
-def _rates_function(kernels: PoseKernels, settings: GraphSettings) -> ca.Function:
-    """(d, h, turn, x, direction, dt) -> rates of x, sliding speeds (n,), determinants (n,), unmet.
+def _simpson(stages: tuple[MX, ...]) -> MX:
+    first, second, third, last = stages
+    return first + 2 * (second + third) + last
+
+
+def _rates(
+    kernels: PoseKernels,
+    settings: GraphSettings,
+    state: tuple[MX, MX, MX, MX],
+    direction: MX,
+    dt: MX,
+) -> tuple[MX, MX, MX, MX]:
+    """Rates of x, sliding speeds (n,), least determinant, violation.
 
     The program of :func:`fpcad.wield.rates.solve_rates`. CasADi hands out something for programs
     without a solution too, so the violation is measured. A lower bound above its upper one, which
     CasADi does not let a program have, is lowered and counts as violation.
     """
-    layout, n_u = kernels.layout, kernels.layout.n_u
-    lower, upper = np.array(settings.lower), np.array(settings.upper)
-    d, h = MX.sym("d", kernels.rates.function.size1_in(0)), MX.sym("h", HAND_SIZE)
-    x = MX.sym("x", layout.size - HAND_SIZE)
-    turn, direction, dt = MX.sym("turn"), MX.sym("direction"), MX.sym("dt")
-    St, s0, Nt, n0, Ct, c0, determinants = kernels.rates.function(d, h, turn, x)
-    values = kernels.constraints.function(d, turn, ca.vertcat(h, x))
-    g, Jt = values[-2], values[-1]
-    Jt_joints, Jt_contacts = Jt[layout.joints, :], Jt[layout.contacts, :]
-    G = Jt_joints.T + Jt_contacts.T @ Ct.T
-    g_turn = Jt[layout.size, :].T + Jt_contacts.T @ c0
-    bounded = [i for i in range(n_u, len(lower)) if np.isfinite(lower[i])]
-    rows = [i - n_u for i in bounded]
-    drift = direction * c0[rows]
-    low, high = lower[bounded], upper[bounded]
-    row_lower = ca.vertcat(
-        -direction * n0, (low - x[bounded]) / dt - drift, -g / dt - direction * g_turn
+    bounds = ca.DM(settings.lower), ca.DM(settings.upper)
+    weights = settings.rate_weight, settings.max_joint_rate
+    H, f, rows, *rest, determinant = kernels.path.rate_program(
+        *state, direction, dt, *bounds, *weights
     )
-    row_upper = ca.vertcat(-direction * n0, (high - x[bounded]) / dt - drift, ca.DM.inf(g.numel()))
-    A = ca.vertcat(Nt.T, Ct.T[rows, :], G)
-    fastest = settings.max_joint_rate
-    slowest = ca.fmax((lower[:n_u] - x[:n_u]) / dt, -fastest)
-    quickest = ca.fmin((upper[:n_u] - x[:n_u]) / dt, fastest)
-    solver = _qp("rate_program", ca.Sparsity.dense(n_u, n_u), A.shape)
-    u_rate = solver(
-        h=2 * (St @ St.T + settings.rate_weight * ca.DM.eye(n_u)),
-        g=2 * St @ (direction * s0),
-        a=A,
-        lbx=ca.fmin(slowest, quickest),
-        ubx=quickest,
-        lba=row_lower,
-        uba=row_upper,
-    )["x"]
-    sliding = ca.reshape(St.T @ u_rate + direction * s0, 2, layout.n_contacts)
-    speeds = ca.sqrt(ca.sum1(sliding**2)).T
-    rates = ca.vertcat(u_rate, Ct.T @ u_rate + direction * c0)
-    met = A @ u_rate
-    excess = [row_lower - met, met - row_upper, slowest - u_rate, u_rate - quickest]
-    outputs = [rates, speeds, determinants, ca.mmax(ca.vertcat(*excess))]
-    return ca.Function("rates", [d, h, turn, x, direction, dt], outputs)
+    low, high, row_low, row_high, *motion = rest
+    solver = _solver("rate_program", ca.Sparsity.dense(*H.shape), rows.shape)
+    solution = solver(h=H, g=f, a=rows, lbx=ca.fmin(low, high), ubx=high, lba=row_low, uba=row_high)
+    result = kernels.path.rate_result(solution["x"], rows, low, high, row_low, row_high, *motion)
+    x_rate, sliding, unmet = result
+    return x_rate, sliding, determinant, unmet
 
 
 def _projected(
-    kernels: PoseKernels, settings: GraphSettings, at: tuple[MX, MX, MX, MX]
+    kernels: PoseKernels, settings: GraphSettings, state: tuple[MX, MX, MX, MX]
 ) -> tuple[MX, MX]:
-    """The state after one shortest Newton step onto contact, and its violation."""
-    layout, (d, h, turn, moved) = kernels.layout, at
-    own = slice(HAND_SIZE, layout.size)
+    """The state after shortest Newton steps onto contact, and its violation.
+
+    Two steps by the contact equations alone do where no margin is in the way; else two steps by
+    quadratic programs that know the margins.
+    """
+    *at, moved = state
+    bounds = ca.DM(settings.lower), ca.DM(settings.upper)
+    quick = kernels.path.newton(*at, kernels.path.newton(*at, moved, *bounds), *bounds)
+    violation = kernels.path.violation(*at, quick)
+    newton = kernels.path.newton
+    state_symbols = [MX.sym(name, newton.size1_in(i)) for i, name in enumerate("dhtx")]
+    given = [*state_symbols, MX.sym("quick", moved.numel()), MX.sym("violation")]
+    keep = ca.Function("keep", given, given[-2:])
+    clear = state_symbols[-1]
+    for _ in range(2):
+        clear = _step_with_margins(kernels, settings, (*state_symbols[:-1], clear))
+    slow = ca.Function("slow", given, [clear, kernels.path.violation(*state_symbols[:-1], clear)])
+    chosen = ca.Function.if_else("projected", keep, slow)
+    return chosen(violation <= settings.contact_tolerance, *state, quick, violation)
+
+
+def _step_with_margins(
+    kernels: PoseKernels, settings: GraphSettings, state: tuple[MX, MX, MX, MX]
+) -> MX:
+    """The state after one shortest Newton step that keeps the margins."""
+    d, h, turn, moved = state
+    own = slice(HAND_SIZE, kernels.layout.size)
     lower, upper = ca.DM(settings.lower), ca.DM(settings.upper)
+    scale = ca.DM(kernels.layout.scale[own])
     x = ca.fmin(ca.fmax(moved, lower), upper)
-    scale = layout.scale[own]
     _, _, c, ct, g, gt = kernels.constraints.function(d, turn, ca.vertcat(h, x))
-    A = ca.horzcat(ct[own, :], gt[own, :]).T @ np.diag(scale)
-    solver = _qp("projection", ca.Sparsity.diag(len(scale)), A.shape)
+    rows = ca.horzcat(ct[own, :], gt[own, :]).T @ ca.diag(scale)
     longest = settings.max_correction
+    solver = _solver("projection", ca.Sparsity.diag(scale.numel()), rows.shape)
     step = solver(
-        h=ca.DM.eye(len(scale)),
-        g=ca.DM.zeros(len(scale)),
-        a=A,
+        h=ca.DM.eye(scale.numel()),
+        g=0,
+        a=rows,
         lbx=ca.fmax((lower - x) / scale, -longest),
         ubx=ca.fmin((upper - x) / scale, longest),
         lba=ca.vertcat(-c, -g),
         uba=ca.vertcat(-c, ca.DM.inf(g.numel())),
     )["x"]
-    projected = ca.fmin(ca.fmax(x + scale * step, lower), upper)
-    return projected, _violation(kernels, d, turn, ca.vertcat(h, projected))
+    return ca.fmin(ca.fmax(x + scale * step, lower), upper)
 
 
-def _violation(kernels: PoseKernels, d: MX, turn: MX, y: MX) -> MX:
-    """Largest deviation from contact and below zero of any margin, from the cheap residual kernel."""
-    six, opposition, skin, clearances = kernels.residual.function(d, turn, y)
-    lengths = ca.repmat(ca.DM([1.0] * 3 + [NORMAL_SCALE_MM] * 3), kernels.layout.n_contacts, 1)
-    least = ca.mmin(ca.vertcat(NORMAL_SCALE_MM * opposition, skin, clearances))
-    return ca.fmax(ca.mmax(ca.fabs(six * lengths)), -least)
+def _held(
+    kernels: PoseKernels,
+    state: tuple[MX, MX, MX, MX],
+    direction: MX,
+    load: tuple[MX, MX, MX, MX],
+) -> tuple[MX, MX, MX]:
+    """Least joint torque [N mm], greatest tip force [N], and the programs' largest violation."""
+    tip_force, cap, motors, limit = load
+    joints = kernels.layout.n_u
+    least, balance, greatest = kernels.path.holding(
+        *state, direction, tip_force, ca.reshape(motors, joints, joints).T
+    )
+    forces = least.size2() - 1
+    facets = least.size1() - 6 - 2 * joints
+    none, unbounded = ca.DM.zeros(forces), ca.DM.inf(forces)
+    torque, torque_excess = _least(
+        ca.vertcat(none, 1),
+        least,
+        ca.vertcat(unbounded, cap / TORQUE_UNIT_NMM),
+        ca.vertcat(balance, ca.DM.zeros(facets + 2 * joints)),
+    )
+    tip, tip_excess = _least(
+        ca.vertcat(none, -1),
+        greatest,
+        ca.vertcat(unbounded, np.inf),
+        ca.vertcat(ca.DM.zeros(6 + facets), limit / TORQUE_UNIT_NMM, limit / TORQUE_UNIT_NMM),
+    )
+    return torque * TORQUE_UNIT_NMM, tip, ca.fmax(torque_excess, tip_excess)
 
 
-def _qp(name: str, hessian: ca.Sparsity, rows: tuple[int, int]) -> ca.Function:
-    """A quadratic program solver that reports failure instead of raising."""
-    return ca.conic(name, "daqp", {"h": hessian, "a": ca.Sparsity.dense(*rows)}, QP_OPTIONS)
+def _least(cost: MX, rows: MX, upper: MX, bound: MX) -> tuple[MX, MX]:
+    """Last variable of the least-cost solution of rows x <= bound, and what is violated.
+
+    The first six rows are equations, and the last variable is not negative.
+    """
+    size = rows.size2()
+    solver = _solver("equilibrium", ca.Sparsity(size, size), rows.shape, LP_OPTIONS)
+    lower = ca.DM.zeros(size)
+    lower[: size - 1] = -np.inf
+    low = ca.vertcat(bound[:6], -ca.DM.inf(rows.size1() - 6))
+    x = solver(g=cost, a=rows, lbx=lower, ubx=upper, lba=low, uba=bound)["x"]
+    excess = rows @ x - bound
+    return x[-1], ca.fmax(ca.mmax(excess), -ca.mmin(excess[:6]))
+
+
+def _solver(
+    name: str, hessian: ca.Sparsity, rows: tuple[int, int], options: dict = QP_OPTIONS
+) -> ca.Function:
+    """A solver of programs of one shape, which reports failure instead of raising."""
+    return ca.conic(name, "daqp", {"h": hessian, "a": ca.Sparsity.dense(*rows)}, options)

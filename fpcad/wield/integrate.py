@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from fpcad.solve.program import build_projection_program
 from fpcad.solve.sqp import SqpSettings, restore
 from fpcad.wield.graph import GraphStep
+from fpcad.wield.load import Load
 from fpcad.wield.rates import SINGULAR_CURVATURE, End, Mechanism, Rates, solve_rates
 
 Array = NDArray[np.float64]
@@ -19,7 +20,15 @@ PROJECTION = SqpSettings(feasibility=1e-9, max_trust=0.5)
 
 
 UNMET = 1e-8
-"""Violation [rad/s, mm/s] of a rate program up to which the graph's solution is taken for one."""
+"""Violation up to which the graph's solution of a program is taken for one; rate programs in rad/s
+and mm/s, programs of equilibrium in N, 10 N mm and N m."""
+
+
+class Holding(NamedTuple):
+    """What holds the tool in a state."""
+
+    torque_nmm: float  # least largest joint torque against the tip force
+    tip_force_n: float  # largest tip force that the motors hold
 
 
 class Step(NamedTuple):
@@ -27,6 +36,8 @@ class Step(NamedTuple):
 
     x: Array  # (n_u + 4n,) state [u, a]
     sliding: Array  # (n,) distance [mm] that each contact slid
+    holding: Holding | None = None
+    """Where it was found along with the step; None says nothing."""
 
 
 def advance(
@@ -57,19 +68,29 @@ def advance(
     return End.PROJECTION if projected is None else Step(projected, sliding)
 
 
-def step(m: Mechanism, turn: float, x: Array, direction: float, dt: float) -> Step | End:
-    """As :func:`advance`, by the mechanism's graph where it has one and finds a solution."""
+def step(
+    m: Mechanism, load: Load, turn: float, x: Array, direction: float, dt: float
+) -> Step | End:
+    """As :func:`advance`, by the mechanism's graph where it has one and finds a solution.
+
+    A dual method's rates are optimal as soon as they violate nothing; an equilibrium is taken only
+    where no program of the graph has failed.
+    """
     if m.graph is not None:
-        out = GraphStep(*m.graph(m.design, m.hand, turn, x, direction, dt))
-        solved = not m.graph.failed and out.unmet[0] <= UNMET
-        if solved and out.least_determinant[0] >= SINGULAR_CURVATURE:
+        out = GraphStep(*m.graph(m.design, m.hand, turn, x, direction, dt, *load.values))
+        if out.unmet[0] <= UNMET and out.least_determinant[0] >= SINGULAR_CURVATURE:
             reached, sliding = out.x.copy(), out.sliding.copy()
             if out.violation[0] <= PROJECTION.feasibility:
-                return Step(reached, sliding)
+                held = not m.graph.failed and out.unheld[0] <= UNMET
+                return Step(reached, sliding, _holding(out) if held else None)
             projected = project(m, turn + direction * dt, reached)
             if projected is not None:
                 return Step(projected, sliding)
     return advance(m, turn, x, direction, dt)
+
+
+def _holding(out: GraphStep) -> Holding:
+    return Holding(float(out.torque_nmm[0]), float(out.tip_force_n[0]))
 
 
 def project(m: Mechanism, turn: float, guess: Array) -> Array | None:

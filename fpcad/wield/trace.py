@@ -9,19 +9,10 @@ from numpy.typing import NDArray
 
 from fpcad.model.equilibrium import greatest_load, least_torque
 from fpcad.wield.integrate import Step, step
+from fpcad.wield.load import Load
 from fpcad.wield.rates import End, Mechanism
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Load:
-    """What the hand must withstand, and with what."""
-
-    tip_force_n: float
-    max_joint_torque_nmm: float
-    motor_per_joint_torque: Array  # (n_motors, n_u): motor torques of unit joint torques
-    motor_torque_nmm: Array  # (n_motors,) continuous torque
 
 
 @dataclass(frozen=True)
@@ -78,7 +69,7 @@ def trace(m: Mechanism, load: Load, x: Array, direction: float, stepping: Steppi
 def _next(
     m: Mechanism, load: Load, state: PathState, direction: float, length: float
 ) -> PathState | End:
-    reached = step(m, state.turn, state.x, direction, length)
+    reached = step(m, load, state.turn, state.x, direction, length)
     if isinstance(reached, End):
         return reached
     held = _hold(m, load, state.turn + direction * length, reached, direction)
@@ -108,11 +99,14 @@ def _bisect(
 
 def _hold(m: Mechanism, load: Load, turn: float, step: Step, direction: float) -> PathState | None:
     """The state reached by a step, if the tool can be held in it against the tip force."""
+    if step.holding is not None:
+        return PathState(turn, step.x, *step.holding, float(step.sliding.sum()))
     wrench, torque, tip = (v.copy() for v in m.kernels.statics(m.design, m.hand, turn, step.x))
     pull = direction * tip
-    holding = least_torque(wrench, torque, load.tip_force_n * pull, load.max_joint_torque_nmm)
+    cap, facets = load.max_joint_torque_nmm, load.cone_facets
+    holding = least_torque(wrench, torque, load.tip_force_n * pull, cap, facets)
     if holding is None:
         return None
     motor_torque = load.motor_per_joint_torque @ torque
-    force = greatest_load(wrench, motor_torque, pull, load.motor_torque_nmm)
+    force = greatest_load(wrench, motor_torque, pull, load.motor_torque_nmm, facets)
     return PathState(turn, step.x, holding.largest_torque_nmm, force, float(step.sliding.sum()))

@@ -9,6 +9,7 @@ from benchmarks.paper.plain_hand import Capsule, gap
 from benchmarks.paper.recheck import LIMITS, least_torque_share, measures, postures, recheck
 from fpcad.model.equilibrium import least_torque
 from fpcad.model.pose import HAND_SIZE
+from fpcad.model.statics import cone_facets
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +78,7 @@ def test_equilibria_agree_with_the_package(bench, first_hand, first_postures):
         values = bench.kernels[pose].statics(first_hand.design, y[:HAND_SIZE], 0.0, y[HAND_SIZE:])
         wrench, torque, tip = (value.copy() for value in values)
         force = bench.spec.poses[pose].tip_force_n
-        ours = least_torque(wrench, torque, force * tip, cap)
+        ours = least_torque(wrench, torque, force * tip, cap, cone_facets(bench.spec.statics))
         assert ours is not None
         assert least_torque_share(posture, 1.0) == pytest.approx(
             ours.largest_torque_nmm / cap, rel=1e-6

@@ -8,7 +8,7 @@ import pytest
 
 from fpcad.model.equilibrium import greatest_load, least_torque
 from fpcad.model.frames import Frame
-from fpcad.model.statics import cone_edges, contact_edges, tip_wrench
+from fpcad.model.statics import cone_axes, cone_edges, cone_facets, tip_wrench, unit_forces
 from fpcad.model.surfaces import cylinder_point, turned_tool
 from fpcad.solve.attempt import Workbench
 from fpcad.spec.pose import Turning
@@ -18,6 +18,7 @@ from tests.model.plain_hand import FINGERS, Array
 from tests.model.postures import random_posture
 
 TOOL = CylinderTool(radius_mm=6, back_mm=-80, tip_mm=80)
+OCTAGON = cone_facets(Statics(cone_facets=8))
 ARM_MM = 50.0
 """Lever of each finger's only joint in the cases done by hand."""
 
@@ -36,19 +37,20 @@ class Fingers:
             point = cylinder_point(TOOL, axial, angle)
             jacobian = ca.DM.zeros(3, len(contacts))
             jacobian[:, i] = -ARM_MM * point.normal
-            edges = contact_edges(statics, point, jacobian)
-            wrench.append(np.array(ca.DM(edges.wrench)))
-            torque.append(np.array(ca.DM(edges.torque)))
+            forces = unit_forces(cone_axes(statics, point), point, jacobian)
+            wrench.append(np.array(ca.DM(forces.wrench)))
+            torque.append(np.array(ca.DM(forces.torque)))
         self.wrench, self.torque = np.hstack(wrench), np.hstack(torque)
 
     def torque_for(self, load: Array, cap: float = 1e6) -> float | None:
         """Least largest torque [N mm] against a load; None where it cannot be held."""
-        holding = least_torque(self.wrench, self.torque, load, cap)
+        holding = least_torque(self.wrench, self.torque, load, cap, OCTAGON)
         return None if holding is None else holding.largest_torque_nmm
 
     def load_within(self, load: Array, limit: float) -> float:
         """Largest multiple of a load within a torque limit [N mm] of each joint."""
-        return greatest_load(self.wrench, self.torque, load, np.full(len(self.torque), limit))
+        limits = np.full(len(self.torque), limit)
+        return greatest_load(self.wrench, self.torque, load, limits, OCTAGON)
 
 
 PULL = np.array([-10.0, 0, 0, 0, 0, 0])  # 10 N along the tool's axis, through O
@@ -117,7 +119,8 @@ class TestLever:
 @pytest.mark.parametrize("friction", [0.2, 0.8])
 def test_edges_lie_on_the_coulomb_cone(friction: float, facets: int):
     point = cylinder_point(TOOL, 10.0, 0.7)
-    edges = np.array(ca.DM(cone_edges(Statics(friction=friction, cone_facets=facets), point)))
+    statics = Statics(friction=friction, cone_facets=facets)
+    edges = np.array(ca.DM(cone_axes(statics, point))) @ cone_edges(statics)
     normal = np.array(ca.DM(point.normal)).ravel()
     assert edges.shape == (3, facets)
     assert np.allclose(-normal @ edges, 1)  # the finger pushes into the tool
@@ -127,17 +130,27 @@ def test_edges_lie_on_the_coulomb_cone(friction: float, facets: int):
     assert np.linalg.matrix_rank(edges) == 3
 
 
+@pytest.mark.parametrize("facets", [3, 8, 13])
+def test_facets_are_the_sides_between_the_edges(facets: int):
+    """Each side holds two neighbouring edges, and all others lie inside."""
+    statics = Statics(cone_facets=facets)
+    heights = cone_facets(statics) @ cone_edges(statics)
+    assert np.allclose(np.sort(heights, axis=1)[:, -2:], 0)
+    assert (np.sort(heights, axis=1)[:, :-2] < -1e-3).all()
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("pose", ["carve", "poke"])
 def test_wrenches_are_forces_at_the_contact_points(bench: Workbench, pose: str, seed: int):
     at = random_posture(bench.spec, pose, seed)
     wrench, torque, tip = bench.kernels[pose].statics(at.d, at.h, at.turn, at.x)
     for i in range(len(at.fingers)):
-        edges, contact = wrench[:, 8 * i : 8 * i + 8], at.tool(i)
-        assert np.allclose(edges[3:], np.cross(contact.p, edges[:3], axis=0))
-        assert np.allclose(-contact.normal @ edges[:3], 1)
+        own, contact = slice(3 * i, 3 * i + 3), at.tool(i)
+        forces, moments = wrench[:3, own], wrench[3:, own]
+        assert np.allclose(moments, np.cross(contact.p, forces, axis=0))
+        assert np.allclose(-contact.normal @ forces, [1, 0, 0])
         others = [f for f in range(4) if f != FINGERS.index(at.fingers[i])]
-        assert not torque.reshape(4, 3, -1)[others, :, 8 * i : 8 * i + 8].any()
+        assert not torque.reshape(4, 3, -1)[others, :, own].any()
     along, across = np.cos(at.turn), np.sin(at.turn)
     assert np.allclose(tip, [across, -along, 0, 0, 0, -80])
 

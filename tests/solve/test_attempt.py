@@ -12,6 +12,7 @@ import pytest
 
 from fpcad.model.equilibrium import least_torque
 from fpcad.model.kernels import PoseKernels
+from fpcad.model.statics import cone_facets
 from fpcad.sample.space import DesignSpace
 from fpcad.solve.attempt import SolvedPose, Workbench, attempt, held, open_workbench, solve_pose
 from fpcad.solve.measure import MARGIN, NORMALS, POSITION_MM, Residual, measure
@@ -169,7 +170,8 @@ def test_a_pose_must_hold_against_both_turning_directions(bench: Workbench, firs
     wrench, torque, tip = (value.copy() for value in values)
     needed = []
     for sign in (1.0, -1.0):
-        holding = least_torque(wrench, torque, sign * spec.poses[pose].tip_force_n * tip, 1e5)
+        load = sign * spec.poses[pose].tip_force_n * tip
+        holding = least_torque(wrench, torque, load, 1e5, cone_facets(spec.statics))
         assert holding is not None
         needed.append(holding.largest_torque_nmm)
 

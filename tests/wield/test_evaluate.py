@@ -9,6 +9,7 @@ import pytest
 
 from fpcad.errors import MakeError
 from fpcad.model.equilibrium import least_torque
+from fpcad.model.statics import cone_facets
 from fpcad.solve.attempt import Workbench
 from fpcad.spec.catalogue import motor
 from fpcad.wield.demand import torque_demand
@@ -115,9 +116,9 @@ class TestDemand:
         demand = torque_demand(bench, pose, design, wielding[pose].path)
         values = bench.kernels[pose].statics(design, y[:6], 0.0, y[6:])
         wrench, torque, tip = (value.copy() for value in values)
-        both = []
+        both, facets = [], cone_facets(bench.spec.statics)
         for sign in (1.0, -1.0):
-            held = least_torque(wrench, torque, sign * 10 * tip, 10_000)
+            held = least_torque(wrench, torque, sign * 10 * tip, 10_000, facets)
             assert held is not None
             both.append(held.torque_nmm.reshape(4, 3))
         worst = np.abs(both).max(axis=(0, 1)) / 1000

@@ -9,8 +9,9 @@ import pytest
 
 from fpcad.model.equilibrium import greatest_load, least_torque
 from fpcad.wield.integrate import Step, advance
+from fpcad.wield.load import Load
 from fpcad.wield.rates import End, Mechanism
-from fpcad.wield.trace import Load, PathState, Stepping, trace
+from fpcad.wield.trace import PathState, Stepping, trace
 from tests.model.plain_hand import Array, Posture
 from tests.wield.wielding import Wielding
 
@@ -22,7 +23,8 @@ def held(m: Mechanism, load: Load, turn: float, x: Array, direction: float) -> b
     """Whether the tool is in equilibrium with the tip force against the direction of turning."""
     wrench, torque, tip = (v.copy() for v in m.kernels.statics(m.design, m.hand, turn, x))
     pull = direction * load.tip_force_n * tip
-    return least_torque(wrench, torque, pull, load.max_joint_torque_nmm) is not None
+    cap, facets = load.max_joint_torque_nmm, load.cone_facets
+    return least_torque(wrench, torque, pull, cap, facets) is not None
 
 
 def posture(bench, wielding: Wielding, state: PathState) -> Posture:
@@ -74,12 +76,14 @@ class TestEveryState:
                 v.copy() for v in m.kernels.statics(m.design, m.hand, state.turn, state.x)
             )
             motors = load.motor_per_joint_torque @ torque
-            at_force = least_torque(wrench, motors, direction * state.tip_force_n * tip, 1e6)
+            pull = direction * tip
+            at_force = least_torque(wrench, motors, state.tip_force_n * pull, 1e6, load.cone_facets)
             assert at_force is not None
             assert at_force.largest_torque_nmm == pytest.approx(
                 load.motor_torque_nmm.min(), rel=1e-6
             )
-            twice = greatest_load(wrench, motors, direction * tip, 2 * load.motor_torque_nmm)
+            limit = 2 * load.motor_torque_nmm
+            twice = greatest_load(wrench, motors, pull, limit, load.cone_facets)
             assert twice == pytest.approx(2 * state.tip_force_n, rel=1e-6)
 
 
@@ -178,7 +182,9 @@ def test_the_reason_is_what_fails_just_beyond_the_end(wielding, monkeypatch: pyt
     """A full step fails for another reason than one that is a little too long."""
     at = wielding["press"]
 
-    def stubborn(m: Mechanism, turn: float, x: Array, direction: float, dt: float) -> Step | End:
+    def stubborn(
+        m: Mechanism, load: Load, turn: float, x: Array, direction: float, dt: float
+    ) -> Step | End:
         if turn + dt > 0.016:
             return End.RATES
         return End.SINGULAR if turn + dt > 0.013 else Step(x, np.zeros(4))

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fpcad.wield.load import Load
 from fpcad.wield.path import WieldingPath
 from fpcad.wield.rates import Mechanism
-from fpcad.wield.trace import Load, Stepping, Trace
+from fpcad.wield.trace import Stepping, Trace
 
 Array = NDArray[np.float64]
 
