@@ -37,6 +37,7 @@ class View(ctypes.Structure):
         ("preload", ctypes.c_int32 * MAX_JOINTS),
         ("measured", ctypes.c_int32 * MAX_JOINTS),
         ("position", ctypes.c_double * MAX_JOINTS),
+        ("current_ma", ctypes.c_int16 * MAX_JOINTS),
     )
 
 

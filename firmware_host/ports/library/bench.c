@@ -57,6 +57,7 @@ void bench_look(const struct device *device, struct view *view)
     memcpy(view->command, controller->follower.command, sizeof view->command);
     memcpy(view->preload, controller->follower.preload, sizeof view->preload);
     memcpy(view->measured, controller->measured, sizeof view->measured);
+    memcpy(view->current_ma, controller->readings.current_ma, sizeof view->current_ma);
     memcpy(view->position, device->plant.joint, sizeof view->position);
 }
 

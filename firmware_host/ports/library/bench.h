@@ -19,6 +19,7 @@ struct view {
     int32_t preload[MAX_JOINTS];
     int32_t measured[MAX_JOINTS];
     double position[MAX_JOINTS];
+    int16_t current_ma[MAX_JOINTS];
 };
 
 struct device *bench_new(const char *setup, const char **fault);

@@ -119,11 +119,13 @@ def firmware_process(
     clock_rate: float = 1.0,
     mishaps: Sequence[Mishap] = (),
     record: Path | None = None,
+    zero_error_rad: NDArray[np.float64] | None = None,
     **changes: Any,
 ) -> Iterator[SimulatedDevice]:
     """As :func:`simulated_controller`, but the firmware itself with simulated motors and tendons.
 
-    `record` becomes rows of doubles (ticks, 3 + 2 n); `changes` are of :class:`FirmwareSetup`.
+    `record` becomes rows of doubles (ticks, 3 + 2 n); `zero_error_rad` (n,): how far the motors'
+    zeros are from the design's, for homing to find; `changes` are of :class:`FirmwareSetup`.
     """
     rate = max(clock_rate, 1)  # silence and buffer are in the host's time
     setup = FirmwareSetup(
@@ -137,6 +139,8 @@ def firmware_process(
     )
     extra = [f"clock_rate {clock_rate!r}", f"encoder_step {_ENCODER_STEP_RAD!r}"]
     extra += [f"mishap {m.kind} {m.at_s!r} {m.joint}" for m in mishaps]
+    if zero_error_rad is not None:
+        extra.append(f"zero_error {' '.join(repr(float(x)) for x in zero_error_rad)}")
     extra += [] if record is None else [f"record {record}"]
     text = setup_text(setup, start_rad) + "\n".join([*extra, "end", ""])
     with _process([str(_firmware())], text) as device:
