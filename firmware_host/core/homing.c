@@ -7,7 +7,7 @@
 #define PROGRESS 2000        /* less than this is the encoders' noise [1e-6 rad] */
 #define STALL_US 200000      /* without progress: an end */
 #define BLOCKED_US 1000000   /* without progress on the way back: something is in the way */
-#define LEAD 200000          /* how far the command runs ahead; with it grows the motors' pull */
+#define LEAD 100000          /* how far the command runs ahead; with it grows the motors' pull */
 #define ARRIVED 50000
 #define TOLERANCE_SHARE 10   /* a tenth of the designed range */
 

@@ -97,7 +97,7 @@ def test_one_joint_moves_at_a_time_and_the_ip_joint_is_kept_still_by_c1(search):
     abduction_begins = int(np.argmax(np.abs(search.way[:, 1]) > 0.05))
     flexing = search.way[:abduction_begins]
     assert np.ptp(flexing[:, 0]) > 1.9
-    assert np.ptp(flexing[:, 2]) < 0.1  # without m3's help it would move by 0.8 of 1.9 rad
+    assert np.ptp(flexing[:, 2]) < 0.3  # without m3, 0.8 of 1.9 rad
     assert np.ptp(flexing[:, 3:], axis=0).max() < 1e-3
 
 
