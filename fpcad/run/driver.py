@@ -31,6 +31,8 @@ class Sample:
     """Frames that the controller could not read so far."""
     resends: int
     knots_sent: int
+    current_ma: Array | None = None  # (n,) of the motors, where they tell
+    temperature_c: Array | None = None  # (n,) of the motors
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,9 @@ class RunError(FpcadError):
     """What state the hand is in, unless who raises it knows better; follows every message."""
 
     def __str__(self) -> str:
-        said = super().__str__().rstrip(".")
-        return f"{said}. {self.hand}" if self.hand else said
+        said = super().__str__()
+        end = "" if said.endswith((".", "?")) else "."
+        return f"{said}{end} {self.hand}" if self.hand else said
 
     def leaving(self, hand: str) -> Self:
         """The same error with another sentence on the state of the hand."""
@@ -204,3 +205,4 @@ class GoalRefused(RunError):
     """A goal for motors that is no number, of another count, or out of their range; not sent."""
 
     exit_code = 49
+    hand = ""

@@ -68,17 +68,21 @@ class SerialTransport:
 
 def open_port(name: str, baud_rate: int = BAUD_RATE) -> SerialTransport:
     """Open a serial port for this program alone; raises a :class:`RunError` with advice."""
+    return SerialTransport(open_serial(name, baud_rate, READ_WAIT_S))
+
+
+def open_serial(name: str, baud_rate: int, read_wait_s: float) -> serial.Serial:
+    """The port itself, whose reads wait `read_wait_s` [s] at most; errors as :func:`open_port`."""
     try:
-        port = serial.Serial(
+        return serial.Serial(
             name,
             baud_rate,
-            timeout=READ_WAIT_S,
+            timeout=read_wait_s,
             write_timeout=_WRITE_TIMEOUT_S,
             exclusive=True,
         )
     except (OSError, termios.error, ValueError) as error:
         raise _opening_error(name, error) from error
-    return SerialTransport(port)
 
 
 def _opening_error(name: str, error: Exception) -> RunError:

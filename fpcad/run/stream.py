@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NoReturn
+
+import numpy as np
 
 from fpcad.run.codec import CLASSES
 from fpcad.run.device_clock import DeviceClock
@@ -27,6 +30,7 @@ from fpcad.run.messages import (
     Cause,
     End,
     Estop,
+    Health,
     Hold,
     Knot,
     Reason,
@@ -52,8 +56,10 @@ class KnotStream:
         joint_names: tuple[str, ...],
         wire: WireKnots,
         watch: Watch,
+        on_message: Callable[[Any], None] = lambda _: None,
     ) -> None:
         self._link = link
+        self._on_message = on_message
         self._joint_names = joint_names
         self._wire = wire
         self._watch = watch
@@ -64,22 +70,12 @@ class KnotStream:
         self._prefill = min(buffer_knots, len(wire.messages))
         self._armed = self._started = self._ended = False
         self._last: Telemetry | None = None
+        self._health: Health | None = None
 
     def play(self) -> Played:
         """Send all knots and wait until the last one is reached; raises a :class:`RunError`."""
-        try:
-            while not self._arrived():
-                if self._watch.stops() > 0:
-                    self._hold()
-                self._send_what_fits()
-                for msg in self._link.poll():
-                    self._handle(msg)
-        except BaseException:
-            # Whatever went wrong here, the joints shall not go on. If the line is gone too, the
-            # controller's own rule of silence stops them.
-            with suppress(LinkLost):
-                self._link.send_now(Hold())
-            raise
+        while not self.arrived:
+            self.step()
         assert self._last is not None
         return Played(
             self._sent,
@@ -89,7 +85,24 @@ class KnotStream:
             State(self._last.state).name,
         )
 
-    def _arrived(self) -> bool:
+    def step(self) -> None:
+        """Send what fits, and hear what has come."""
+        try:
+            if self._watch.stops() > 0:
+                self._hold()
+            self._send_what_fits()
+            for msg in self._link.poll():
+                self._handle(msg)
+        except BaseException:
+            # Whatever went wrong here, the joints shall not go on. If the line is gone too, the
+            # controller's own rule of silence stops them.
+            with suppress(LinkLost):
+                self._link.send_now(Hold())
+            raise
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the last knot is reached."""
         last = self._last
         return (
             self._started
@@ -128,12 +141,16 @@ class KnotStream:
         return None
 
     def _handle(self, msg: Any) -> None:
+        if not isinstance(msg, Refused):  # refusals become errors here
+            self._on_message(msg)
         if isinstance(msg, Ack):
             self._free = msg.free_knots
         elif isinstance(msg, Telemetry):
             self._note(msg)
             if self._armed:
                 self._require_motion_allowed(msg.state, msg.cause)
+        elif isinstance(msg, Health):
+            self._health = msg
         elif isinstance(msg, Refused):
             self._require_motion_allowed(msg.state, msg.cause)
             raise self._refusal(msg)
@@ -142,7 +159,7 @@ class KnotStream:
         self._last = msg
         self._free = self._buffer - msg.queued_knots
         self._clock.add(self._link.clock(), msg.device_us)
-        self._watch.on_sample(to_sample(msg, self._link.resends, self._sent))
+        self._watch.on_sample(to_sample(msg, self._link.resends, self._sent, self._health))
 
     def _require_motion_allowed(self, state: int, cause: int) -> None:
         where = f"at {self._last.path_us / 1e6:.2f} s of the path" if self._last else "at the start"
@@ -201,7 +218,9 @@ class KnotStream:
             raise HeldByUser(f"held {where}: the hand keeps its grip, motors stay on")
 
 
-def to_sample(msg: Telemetry, resends: int, knots_sent: int) -> Sample:
+def to_sample(
+    msg: Telemetry, resends: int, knots_sent: int, health: Health | None = None
+) -> Sample:
     """Telemetry in SI units."""
     return Sample(
         msg.device_us / 1e6,
@@ -214,4 +233,6 @@ def to_sample(msg: Telemetry, resends: int, knots_sent: int) -> Sample:
         msg.bad_frames,
         resends,
         knots_sent,
+        None if health is None else np.array(health.current_ma, dtype=float),
+        None if health is None else np.array(health.temperature_c, dtype=float),
     )

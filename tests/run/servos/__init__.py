@@ -1,0 +1,1 @@
+"""Servos behind a pseudo terminal: what the makers' own SDKs speak to in these tests."""
