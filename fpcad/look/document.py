@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from fpcad.look.columns import Column
 from fpcad.look.curves import efficiency, range_shares
 from fpcad.look.groups import clusters, design_map, representatives
-from fpcad.look.hands import hand_dimensions
+from fpcad.look.hands import HandDimensions, hand_dimensions
 from fpcad.look.holding import HoldingForces
-from fpcad.look.kept import exact_paths, thin_paths
+from fpcad.look.kept import MAX_EXACT, exact_paths, thin_paths
 from fpcad.look.layout import layout_of
 from fpcad.look.meshes import chosen_meshes
 from fpcad.look.pack import Packer
@@ -28,17 +28,22 @@ from fpcad.units import RAD_PER_DEG
 Array = NDArray[np.float64]
 Told = dict[str, Any]
 
-FORMAT = 1
+FORMAT = 2
+
+OPENING, HANDS, PATHS = "opening", "hands", "paths"
+"""Blocks in the order of the page: figures and the chosen hand; every hand in 3D; other paths."""
 
 
-def build_document(run: Run) -> tuple[Told, str]:
-    """What the page shows, and the block of numbers that it refers to.
+def build_document(run: Run) -> tuple[Told, dict[str, str]]:
+    """What the page shows, and the blocks of numbers that it refers to.
+
+    The page draws from the first block while the browser still reads the others.
 
     Returns:
-        JSON values with references into the block, and the block in base64; see
-        :class:`fpcad.look.pack.Packer`.
+        JSON values with references into the blocks, and each block in base64, the first one first;
+        see :class:`fpcad.look.pack.Packer`.
     """
-    pack = Packer()
+    pack, hands, paths = (Packer(name) for name in (OPENING, HANDS, PATHS))
     labels = clusters(run.space.standardize(run.designs))
     merit = numbers(run.table, MEAN_SCORE)
     chosen_row = _chosen_row(run)
@@ -61,14 +66,15 @@ def build_document(run: Run) -> tuple[Told, str]:
         ],
         "efficiency": _efficiency(run, pack),
         "shares": _shares(run, pack),
-        "hand": _hand(run, pack),
+        "hand": {**_hand(run), "sizes": _sizes(hand_dimensions(run), hands)},
         "tool": run.spec.tool.model_dump(mode="json"),
-        "poses": [_pose(run, pack, pose) for pose in run.poses],
-        "exact": exact_paths(run, pack, shown),
-        "thin": thin_paths(run, pack, shown, merit),
-        "meshes": _meshes(run, pack),
+        "poses": [_pose(run, hands, pose) for pose in run.poses],
+        "opening": _opening(run, pack, chosen_row),
+        "exact": exact_paths(run, paths, shown[len(first) : MAX_EXACT]),
+        "thin": thin_paths(run, paths, shown[:MAX_EXACT], merit),
+        "meshes": _meshes(run, paths),
     }
-    return document, pack.text()
+    return document, {block.name: block.text() for block in (pack, hands, paths)}
 
 
 def _chosen_row(run: Run) -> int | None:
@@ -89,6 +95,14 @@ def _candidates(run: Run, pack: Packer, merit: Array, labels: NDArray[np.int64])
         "cluster": pack.integers(labels),
         "mean": pack.exact(merit),
     }
+
+
+def _opening(run: Run, pack: Packer, chosen: int | None) -> Told | None:
+    """What the chosen hand is shown with before the other hands are there."""
+    if chosen is None:
+        return None
+    sizes = hand_dimensions(run, np.array([chosen]))
+    return {"row": chosen, "sizes": _sizes(sizes, pack), "exact": exact_paths(run, pack, [chosen])}
 
 
 def _calls(run: Run) -> NDArray[np.int64]:
@@ -146,8 +160,8 @@ def _shares(run: Run, pack: Packer) -> Told:
     }
 
 
-def _hand(run: Run, pack: Packer) -> Told:
-    names, sizes = TEMPLATES[run.spec.hand.template], hand_dimensions(run)
+def _hand(run: Run) -> Told:
+    names = TEMPLATES[run.spec.hand.template]
     limits = run.spec.hand.joint_limits_deg
     palm = [
         {
@@ -163,12 +177,17 @@ def _hand(run: Run, pack: Packer) -> Told:
         "fingers": list(names.fingers),
         "joints": list(names.joints),
         "limits": [[a * RAD_PER_DEG for a in limits[joint]] for joint in names.joints],
+        "palm": palm,
+    }
+
+
+def _sizes(sizes: HandDimensions, pack: Packer) -> Told:
+    return {
         "radius": pack.exact(sizes.radius_mm),
         "proximal": pack.exact(sizes.proximal_mm),
         "distal": pack.exact(sizes.distal_axis_mm),
         "root_position": pack.exact(sizes.root_position_mm),
         "root_quaternion": pack.exact(sizes.root_quaternion),
-        "palm": palm,
     }
 
 

@@ -26,8 +26,9 @@ class HandDimensions:
     root_quaternion: Array  # (n, n_fingers, 4) w x y z, in H
 
 
-def hand_dimensions(run: Run) -> HandDimensions:
-    """Dimensions of all candidates of a run, in the order of its table."""
+def hand_dimensions(run: Run, rows: NDArray[np.int64] | None = None) -> HandDimensions:
+    """Dimensions of the candidates in some rows of a run's table; of all of them by default."""
+    designs = run.designs if rows is None else run.designs[rows]
     template, names = hand_template(run.spec.hand), run.space.names
     d = ca.SX.sym("d", len(names))
     proximal, distal = (template.link_shape(link, d) for link in ("proximal", "distal"))
@@ -37,9 +38,9 @@ def hand_dimensions(run: Run) -> HandDimensions:
         ca.vertcat(*[frame.p for frame in frames]),
         ca.vertcat(*[ca.vec(frame.R) for frame in frames]),
     ]
-    n, fingers = len(run.ids), len(frames)
+    n, fingers = len(designs), len(frames)
     function = ca.Function("dimensions", [d], outputs)
-    found = function.map(n)(run.space.internal(run.designs).T) if n else [np.zeros((3, 0))] * 3
+    found = function.map(n)(run.space.internal(designs).T) if n else [np.zeros((3, 0))] * 3
     lengths, positions, rotations = (np.array(value).T for value in found)
     # CasADi stacks a matrix column by column.
     matrices = rotations.reshape(n * fingers, 3, 3).transpose(0, 2, 1) if n else np.zeros((0, 3, 3))

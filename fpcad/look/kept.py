@@ -20,13 +20,14 @@ Told = dict[str, Any]
 
 KEYFRAMES = 17
 MAX_EXACT = 12
+"""Hands with every state on the page, the chosen one among them."""
 MAX_THIN = 4000
 """Hands with keyframes on the page; about 1 kB each."""
 
 
 def exact_paths(run: Run, pack: Packer, rows: Sequence[int]) -> list[Told]:
-    """Every stored state of the first twelve hands in `rows`, with the forces that hold the tool."""
-    ids = {int(run.ids[row]) for row in rows[:MAX_EXACT]}
+    """Every stored state of the hands in `rows`, with the forces that hold the tool."""
+    ids = {int(run.ids[row]) for row in rows}
     return tell_paths(run, pack, stored_paths(run.folder / "paths.parquet", ids))
 
 
@@ -58,7 +59,7 @@ def _tell(run: Run, pack: Packer, path: PathStates, forces: HoldingForces, hands
 
 def thin_paths(run: Run, pack: Packer, shown: Sequence[int], merit: Array) -> Told:
     """Keyframes of the front's other hands; the best by mean score where they are too many."""
-    front = np.setdiff1d(np.flatnonzero(run.front), np.asarray(shown[:MAX_EXACT], dtype=int))
+    front = np.setdiff1d(np.flatnonzero(run.front), np.asarray(shown, dtype=int))
     rows = np.sort(front[np.argsort(-merit[front], kind="stable")][:MAX_THIN])
     frames: dict[str, dict[int, PathStates]] = {pose: {} for pose in run.poses}
     for path in stored_paths(run.folder / "paths.parquet", set(run.ids[rows].tolist())):

@@ -1,4 +1,4 @@
-"""Arrays of a page in one block of bytes: quantized, taken apart into byte planes, deflated."""
+"""Arrays of a page in blocks of bytes: quantized, taken apart into byte planes, deflated."""
 
 from __future__ import annotations
 
@@ -15,13 +15,15 @@ LARGEST = 32767
 
 
 class Packer:
-    """Collects arrays; each gets a reference that the page's script can read it by.
+    """Collects arrays of one block; each gets a reference that the page's script can read it by.
 
-    A reference holds `at` and `n` (bytes and items in the block), `type` (`f4`, `i2`, `u1`, `i4`),
-    `shape`, for quantized arrays `scale` and `offset`, and `delta` where rows hold differences.
+    A reference holds `in`, the block's name, `at` and `n` (bytes and items in the block), `type`
+    (`f4`, `i2`, `u1`, `i4`), `shape`, for quantized arrays `scale` and `offset`, and `delta` where
+    rows hold differences.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, name: str) -> None:
+        self.name = name
         self._block = bytearray()
 
     def exact(self, values: ArrayLike) -> dict[str, Any]:
@@ -58,4 +60,5 @@ class Packer:
         flat = np.ascontiguousarray(array).ravel()
         # Bytes of the same weight side by side: neighbours are alike, so they deflate better.
         self._block += flat.view(np.uint8).reshape(-1, size).T.tobytes()
-        return {"at": at, "n": int(flat.size), "type": kind, "shape": list(array.shape)}
+        where = {"in": self.name, "at": at, "n": int(flat.size)}
+        return {**where, "type": kind, "shape": list(array.shape)}

@@ -11,12 +11,13 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
-from fpcad.look.document import build_document
+from fpcad.look.document import OPENING, build_document
 from fpcad.look.run import Run, load
 from fpcad.look.words import summarize
 from fpcad.store import write_whole
 
 FILE = "report.html"
+SCRIPTS = ("report.js", "report.3d.js")
 MAX_BYTES = 15_000_000
 """What a page of 10,000 candidates stays under."""
 
@@ -36,22 +37,26 @@ def report_page(run: Run, token: str = "") -> str:
         token: what the live view's page shows to its server; with one, the page asks that server
             for paths.
     """
-    document, block = build_document(run)
+    document, blocks = build_document(run)
     document["token"] = token
     page = files("fpcad.look") / "page"
-    script = (page / "report.js").read_text(encoding="utf-8")
     template = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     return template.from_string((page / "report.html").read_text(encoding="utf-8")).render(
         summary=summarize(run, document),
         document=document,
         version=version("fpcad"),
         style=(page / "report.css").read_text(encoding="utf-8"),
-        script=script,
-        script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        scripts=[_script((page / name).read_text(encoding="utf-8")) for name in SCRIPTS],
         run_json=_for_script(document),
-        block=block,
+        blocks=blocks,
+        opening=OPENING,
         live=bool(token),
     )
+
+
+def _script(text: str) -> dict[str, str]:
+    """A script and the hash by which the page's policy knows it."""
+    return {"text": text, "hash": base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}
 
 
 def _for_script(value: object) -> str:

@@ -45,7 +45,7 @@ class LiveView:
         """All paths of a candidate, from the store or traced now, and their block of numbers."""
         with self._lock:
             stored = list(stored_paths(self.run.folder / "paths.parquet", {candidate}))
-            pack = Packer()
+            pack = Packer("traced")
             told = tell_paths(self.run, pack, stored or self.trace(candidate))
             return {"exact": told, "block": pack.text()}
 

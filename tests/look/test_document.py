@@ -33,9 +33,10 @@ from fpcad.select.columns import numbers
 TYPES = {"f4": "<f4", "i2": "<i2", "i4": "<i4", "u1": "u1"}
 
 
-def unpacked(reference: dict[str, Any], text: str) -> np.ndarray:
+def unpacked(reference: dict[str, Any], blocks: dict[str, str]) -> np.ndarray:
     """What the page's script makes of a reference, in a few lines of Python."""
-    block, kind = zlib.decompress(base64.b64decode(text)), np.dtype(TYPES[reference["type"]])
+    block = zlib.decompress(base64.b64decode(blocks[reference["in"]]))
+    kind = np.dtype(TYPES[reference["type"]])
     n, at = reference["n"], reference["at"]
     planes = np.frombuffer(block[at : at + n * kind.itemsize], np.uint8)
     values = planes.reshape(kind.itemsize, n).T.copy().view(kind).reshape(reference["shape"])
@@ -50,15 +51,15 @@ def unpacked(reference: dict[str, Any], text: str) -> np.ndarray:
 @pytest.mark.parametrize("delta", [False, True])
 def test_quantized_numbers_come_back_within_a_65000th_of_their_range(delta):
     values = np.random.default_rng(0).normal(size=(7, 5, 9))
-    pack = Packer()
+    pack = Packer("a")
     reference = pack.quantized(values, delta)
-    found = unpacked(reference, pack.text())
+    found = unpacked(reference, {"a": pack.text()})
     assert np.abs(found - values).max() <= np.ptp(values) / 65_000
     assert np.abs(found - values).max() > 0
 
 
 def test_packed_numbers_come_back_as_they_were():
-    pack = Packer()
+    pack = Packer("a")
     told = [
         (pack.exact([1.5, np.nan]), [1.5, np.nan]),
         (pack.integers([-1, 70_000]), [-1, 70_000]),
@@ -67,7 +68,7 @@ def test_packed_numbers_come_back_as_they_were():
         (pack.quantized([]), []),
     ]
     for reference, values in told:
-        assert unpacked(reference, pack.text()) == pytest.approx(np.array(values), nan_ok=True)
+        assert unpacked(reference, {"a": pack.text()}) == pytest.approx(np.array(values), nan_ok=True)
 
 
 def test_dimensions_are_those_that_parts_are_made_of(real_run: Run):
@@ -118,20 +119,28 @@ def test_keyframes_keep_both_ends_and_the_pose():
 
 
 def test_the_chosen_hand_has_all_of_its_states_and_the_front_its_keyframes(real_run: Run):
-    document, block = build_document(real_run)
-    chosen = document["chosen"]
+    document, blocks = build_document(real_run)
+    chosen, opening = document["chosen"], document["opening"]
+    assert opening["row"] == chosen
     for pose in real_run.poses:
-        (path,) = (p for p in document["exact"] if p["row"] == chosen and p["pose"] == pose)
+        (path,) = (p for p in opening["exact"] if p["row"] == chosen and p["pose"] == pose)
         rows = [
             r for r in real_run.paths(int(real_run.ids[chosen])).to_pylist() if r["pose"] == pose
         ]
         expected = np.array([r["joints_rad"] for r in rows])
-        assert unpacked(path["joints"], block) == pytest.approx(expected, abs=3e-7)
-        turns = unpacked(document["thin"]["poses"][pose]["turn"], block)
+        assert unpacked(path["joints"], blocks) == pytest.approx(expected, abs=3e-7)
+        turns = unpacked(document["thin"]["poses"][pose]["turn"], blocks)
         assert turns.shape[2] == KEYFRAMES
-    exact = {path["row"] for path in document["exact"]}
-    thin = set(unpacked(document["thin"]["rows"], block).tolist())
+    exact = {path["row"] for path in [*opening["exact"], *document["exact"]]}
+    thin = set(unpacked(document["thin"]["rows"], blocks).tolist())
     assert exact | thin >= set(np.flatnonzero(real_run.front).tolist())
+
+
+def test_the_page_opens_with_the_first_block_alone(real_run: Run):
+    document, blocks = build_document(real_run)
+    later = ("hand", "poses", "exact", "thin", "meshes")
+    opening = json.dumps({name: told for name, told in document.items() if name not in later})
+    assert set(re.findall(r'"in": "(\w+)"', opening)) == {"opening"} == set(list(blocks)[:1])
 
 
 def test_each_mesh_of_the_urdf_is_there_once(real_run: Run):

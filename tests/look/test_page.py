@@ -119,7 +119,7 @@ def test_links_lie_where_the_model_has_them(opened: Page, real_run: Run):
 
 def test_parts_and_contact_shapes_are_never_drawn_together(opened: Page):
     seen = "[...new Set(fpcad.stage.hand.{}.map((mesh) => mesh.visible))]"
-    for wanted in (False, True):
+    for wanted in (True, False, True):
         opened.locator("#player input[type=checkbox]").set_checked(wanted)
         assert opened.evaluate(seen.format("parts")) == [wanted]
         assert opened.evaluate(seen.format("shown")) == [not wanted]

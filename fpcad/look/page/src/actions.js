@@ -1,12 +1,12 @@
 // What can be done with the selected hand: keep it beside, export it, and, live, choose it.
 
-import { GLTFExporter } from "three/addons/exporters/GLTFExporter.js";
 import { unpack } from "./data.js";
 import { make } from "./dom.js";
+import { exactPaths } from "./motion.js";
 
 export class Actions {
-  constructor(host, state, stage, player, compare) {
-    Object.assign(this, { state, stage, player });
+  constructor(host, state, stage, player, compare, exporter) {
+    Object.assign(this, { state, stage, player, exporter });
     const button = (text, act) => make("button", { type: "button", onclick: act }, text);
     host.append(button("Keep beside", () => compare.add(state.selected)));
     if (stage) host.append(button("Save PNG", () => this.#png()), button("Save GLB", () => this.#glb()));
@@ -30,19 +30,18 @@ export class Actions {
   }
 
   async #glb() {
-    const exporter = new GLTFExporter();
-    const binary = await exporter.parseAsync([this.stage.hand.group, this.stage.inTool], { binary: true, onlyVisible: true });
+    const binary = await this.exporter.parseAsync([this.stage.hand.group, this.stage.inTool], { binary: true, onlyVisible: true });
     save(new Blob([binary], { type: "model/gltf-binary" }), `hand-${this.#id}.glb`);
   }
 
   /** Asks the live view's server for a hand's paths and shows them when they come. */
   async #fetchPaths(row) {
     const { run } = this.state;
-    if (run.exact.some((path) => path.row === row)) return;
+    if (exactPaths(run, row).length) return;
     const answer = await fetch(`paths?id=${run.candidates.id[row]}`);
     const told = await answer.json();
     if (!answer.ok) return this.#say(told.error);
-    run.exact.push(...(await unpack({ exact: told.exact }, told.block)).exact);
+    run.exact.push(...(await unpack({ exact: told.exact }, "traced", told.block)).exact);
     if (this.state.selected === row) this.player.reload();
   }
 

@@ -2,13 +2,12 @@
 
 import { make, format } from "./dom.js";
 import { Player } from "./player.js";
-import { Stage } from "./stage.js";
 
 const MOST = 4;
 
 export class Compare {
-  constructor(host, run) {
-    Object.assign(this, { host, run, rows: [] });
+  constructor(host, run, openStage) {
+    Object.assign(this, { host, run, openStage, rows: [] });
   }
 
   add(row) {
@@ -22,12 +21,12 @@ export class Compare {
     const title = make("h3", {}, `Hand ${candidates.id[row]}, mean ${format(candidates.mean[row])} `);
     const card = make("article", { class: "card" }, title, close, view, controls, make("table", {}, ...lines));
     this.host.append(card);
-    card.stage = new Stage(view, this.run);
+    card.stage = this.openStage(view);
     new Player(controls, { run: this.run, selected: row, on() {} }, card.stage);
   }
 
   #remove(card, row) {
-    card.stage.dispose();
+    card.stage?.dispose();
     card.remove();
     this.rows = this.rows.filter((kept) => kept !== row);
   }

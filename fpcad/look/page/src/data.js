@@ -1,34 +1,73 @@
-// The run's document and the block of numbers that it refers to.
+// The run's document and the blocks of numbers that it refers to.
+
+import { unzlibSync } from "three/addons/libs/fflate.module.js";
 
 const TYPES = { f4: Float32Array, i2: Int16Array, i4: Int32Array, u1: Uint8Array };
 const MISSING = -32768;
+const OPENING = "opening", LATER = ["hands", "paths"]; // as in fpcad/look/document.py
+const PATIENCE_MS = 12; // decoding lets the reader's clicks in so often
 
-/** Reads the document and inflates its block; see fpcad/look/pack.py. */
-export async function readRun() {
+/**
+ * Reads the document and its first block, of what the page opens with; see fpcad/look/pack.py. In one
+ * go: whoever waits for the browser's own inflater here waits for megabytes of the other blocks too.
+ */
+export function readRun() {
   const run = JSON.parse(document.getElementById("run").textContent);
-  return unpack(run, document.getElementById("block").textContent.trim());
+  const bytes = unzlibSync(bytesOf(textOf(OPENING)));
+  for (const [place, key] of referencesTo(run, OPENING)) place[key] = decode(place[key], bytes);
+  return Object.assign(run, { isWhole: false });
+}
+
+/** Reads the other blocks when the browser has come to their end. */
+export async function readRest(run) {
+  if (document.readyState === "loading")
+    await new Promise((done) => document.addEventListener("DOMContentLoaded", done, { once: true }));
+  for (const name of LATER) await unpack(run, name, textOf(name));
+  run.isWhole = true;
+}
+
+function textOf(block) {
+  const element = document.getElementById(`block-${block}`);
+  const text = element.textContent.trim();
+  element.remove(); // megabytes that nobody needs any more
+  return text;
 }
 
 /** Puts the numbers of a block [base64] in the places of the references to them. */
-export async function unpack(told, block) {
-  resolve(told, await inflate(block));
+export async function unpack(told, name, base64) {
+  const bytes = await inflate(base64);
+  let last = performance.now();
+  for (const [place, key] of referencesTo(told, name)) {
+    place[key] = decode(place[key], bytes);
+    if (performance.now() - last > PATIENCE_MS) {
+      await new Promise((done) => setTimeout(done));
+      last = performance.now();
+    }
+  }
   return told;
 }
 
 async function inflate(base64) {
-  const text = atob(base64), bytes = new Uint8Array(text.length);
-  for (let i = 0; i < bytes.length; i++) bytes[i] = text.charCodeAt(i);
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const stream = new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Puts arrays in the place of all references. */
-function resolve(node, block) {
+function bytesOf(base64) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(base64);
+  const text = atob(base64), bytes = new Uint8Array(text.length);
+  for (let i = 0; i < bytes.length; i++) bytes[i] = text.charCodeAt(i);
+  return bytes;
+}
+
+/** All [object, key] that hold a reference into a block. */
+function referencesTo(node, name, found = []) {
+  if (ArrayBuffer.isView(node)) return found;
   for (const [key, value] of Object.entries(node)) {
     if (value === null || typeof value !== "object") continue;
-    if (Number.isInteger(value.at) && value.type in TYPES) node[key] = decode(value, block);
-    else resolve(value, block);
+    if (!(value.type in TYPES)) referencesTo(value, name, found);
+    else if (value.in === name) found.push([node, key]);
   }
+  return found;
 }
 
 function decode(reference, block) {

@@ -15,11 +15,51 @@ export function format(value, digits = 1) {
   return value.toFixed(digits).replace("-", "−");
 }
 
-/** Calls back with the width of an element, now and whenever it changes. */
+/** Calls back with the width of an element, when it is first drawn and whenever it changes. */
 export function onResize(element, redraw) {
   let last = 0;
-  new ResizeObserver(() => {
+  const measure = () => {
     const width = Math.floor(element.clientWidth);
     if (width > 0 && width !== last) redraw((last = width));
-  }).observe(element);
+  };
+  whenSeen(element, () => {
+    measure();
+    new ResizeObserver(measure).observe(element);
+  });
 }
+
+const unseen = new Map(); // elements and what is to be done when they come into sight
+const sight = new IntersectionObserver((entries) => entries.forEach((entry) => entry.isIntersecting && see(entry.target)), { rootMargin: "400px" });
+
+/** Does something when an element comes into sight; when nothing else is to be done, before. */
+function whenSeen(element, act) {
+  unseen.set(element, act);
+  sight.observe(element);
+}
+
+function see(element) {
+  const act = unseen.get(element);
+  unseen.delete(element);
+  sight.unobserve(element);
+  act?.();
+}
+
+/** Draws what is out of sight, one element after the other. */
+export async function drawUnseen() {
+  for (;;) {
+    await idle();
+    const [element] = unseen.keys();
+    if (!element) return;
+    see(element);
+  }
+}
+
+/** Draws everything now, for the printer. */
+export function drawAllNow() {
+  [...unseen.keys()].forEach(see);
+}
+
+const idle = () => new Promise((done) => (window.requestIdleCallback ? requestIdleCallback(done, { timeout: 300 }) : setTimeout(done, 30)));
+
+/** When the browser has shown what was drawn. */
+export const shown = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done)));

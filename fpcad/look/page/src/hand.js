@@ -4,29 +4,34 @@ import { CapsuleGeometry, Group, Mesh, SphereGeometry, Vector3 } from "three";
 
 const JOINT_AXES = ["y", "z", "y"]; // of a finger, from the root out; as in the URDF
 
+/** The dimensions of a row: the chosen hand's come before those of all the others. */
+function sizesOf({ opening, hand }, row) {
+  return opening?.row === row ? { sizes: opening.sizes, index: 0 } : { sizes: hand.sizes, index: row };
+}
+
 export class Hand {
-  constructor(run, row, material, meshes) {
+  constructor(run, row, material) {
     const { hand } = run;
+    const { sizes, index } = sizesOf(run, row);
     this.group = new Group();
     this.links = { palm: this.group };
     this.joints = []; // {group, axis} in the order of the state vector
     this.shapes = new Group();
     const roots = {};
     hand.fingers.forEach((finger, f) => {
-      const at = (row * hand.fingers.length + f) * 3, turn = (row * hand.fingers.length + f) * 4;
-      roots[finger] = new Vector3(...hand.root_position.subarray(at, at + 3));
-      const [w, x, y, z] = hand.root_quaternion.subarray(turn, turn + 4);
-      this.#finger(finger, roots[finger], [x, y, z, w], hand, row, material);
+      const at = (index * hand.fingers.length + f) * 3, turn = (index * hand.fingers.length + f) * 4;
+      roots[finger] = new Vector3(...sizes.root_position.subarray(at, at + 3));
+      const [w, x, y, z] = sizes.root_quaternion.subarray(turn, turn + 4);
+      this.#finger(finger, roots[finger], [x, y, z, w], sizes, index, material);
     });
     for (const solid of hand.palm) this.#palmSolid(solid, roots, material);
     this.shown = [...this.#shapesOf];
-    if (meshes.length) this.#addMeshes(meshes);
   }
 
   #shapesOf = [];
 
-  #finger(finger, root, quaternion, hand, row, material) {
-    const radius = hand.radius[row];
+  #finger(finger, root, quaternion, sizes, index, material) {
+    const radius = sizes.radius[index];
     const base = new Group();
     base.position.copy(root);
     base.quaternion.set(...quaternion);
@@ -34,13 +39,13 @@ export class Hand {
     let parent = base;
     ["mcp", "proximal", "distal"].forEach((link, i) => {
       const joint = new Group();
-      if (i === 2) joint.position.x = hand.proximal[row];
+      if (i === 2) joint.position.x = sizes.proximal[index];
       parent.add(joint);
       this.joints.push({ group: joint, axis: JOINT_AXES[i] });
       this.links[`${finger}_${link}`] = parent = joint;
     });
-    this.#capsule(this.links[`${finger}_proximal`], new Vector3(), new Vector3(hand.proximal[row], 0, 0), radius, material.link);
-    this.#capsule(this.links[`${finger}_distal`], new Vector3(), new Vector3(hand.distal[row], 0, 0), radius, material.tip);
+    this.#capsule(this.links[`${finger}_proximal`], new Vector3(), new Vector3(sizes.proximal[index], 0, 0), radius, material.link);
+    this.#capsule(this.links[`${finger}_distal`], new Vector3(), new Vector3(sizes.distal[index], 0, 0), radius, material.tip);
   }
 
   #palmSolid({ start, end, offset, radius }, roots, material) {
@@ -59,7 +64,8 @@ export class Hand {
     this.#shapesOf.push(mesh);
   }
 
-  #addMeshes(meshes) {
+  /** Adds printed parts to the links that they belong to. */
+  addMeshes(meshes) {
     this.parts = meshes.flatMap(({ links, geometry, material }) =>
       links.map((link) => {
         const mesh = new Mesh(geometry, material);

@@ -1,39 +1,51 @@
 // The page: reads the run, draws every figure, ties them together by one selection.
 
+import { extent } from "d3-array";
 import { Actions } from "./actions.js";
 import { Compare } from "./compare.js";
-import { make } from "./dom.js";
+import { drawUnseen, make, shown } from "./dom.js";
 import { Lines } from "./lines.js";
 import { List } from "./list.js";
 import { Numbers } from "./numbers.js";
 import { Parallel } from "./parallel.js";
 import { Player } from "./player.js";
 import { Scatter } from "./scatter.js";
-import { Stage } from "./stage.js";
 import { State } from "./state.js";
 import { onThemeChange } from "./theme.js";
-import { readRun } from "./data.js";
+import { readRest, readRun } from "./data.js";
 
 const at = (id) => document.getElementById(id);
 const column = (points, k) => Float32Array.from({ length: points.length / 2 }, (_, i) => points[2 * i + k]);
 
+const view3d = new Promise((arrived) => (window.fpcad3d = arrived)); // called by view3d.js
+
 async function start() {
-  const run = await readRun();
+  const run = readRun();
   const state = new State(run);
   const figures = run.candidates.count ? drawFigures(run, state) : [];
-  const stage = run.candidates.count ? openStage(run) : null;
-  const player = run.candidates.count ? new Player(at("player"), state, stage) : null;
   new Numbers(at("numbers"), state);
-  if (player) {
-    new List(at("list"), at("list-controls"), state);
-    new Actions(at("actions"), state, stage, player, new Compare(at("compare"), run));
-  }
   bindControls(run, state);
+  performance.mark("fpcad:answers"); // figures in sight are drawn next, clicks are answered from now on
+  await shown();
+  const whole = readRest(run);
+  const { Stage, GLTFExporter } = await view3d;
+  const open = (host) => openStage(host, run, Stage);
+  const stage = run.candidates.count ? open(at("stage")) : null;
+  const player = run.candidates.count ? new Player(at("player"), state, stage) : null;
+  performance.mark("fpcad:stage");
   onThemeChange(() => {
     figures.forEach((figure) => figure.redraw());
     stage?.render();
   });
+  await whole;
+  if (player) {
+    player.reload();
+    new List(at("list"), at("list-controls"), state);
+    new Actions(at("actions"), state, stage, player, new Compare(at("compare"), run, open), new GLTFExporter());
+  }
+  await drawUnseen();
   window.fpcad = { run, state, stage, player, figures }; // for tests and for the curious
+  performance.mark("fpcad:whole");
   document.documentElement.dataset.ready = "yes";
 }
 
@@ -116,17 +128,16 @@ function parallel(run, state) {
 
 /** Least and greatest number, apart from each other. */
 function span(values) {
-  const known = values.filter((v) => !Number.isNaN(v));
-  const [low, high] = known.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [Infinity, -Infinity]);
-  return low < high ? [low, high] : [(known[0] ?? 0) - 1, (known[0] ?? 0) + 1];
+  const [low = 0, high = 0] = extent(values);
+  return low < high ? [low, high] : [low - 1, low + 1];
 }
 
 /** The 3D view, or a sentence where the browser cannot draw it. */
-function openStage(run) {
+function openStage(host, run, Stage) {
   try {
-    return new Stage(at("stage"), run);
+    return new Stage(host, run);
   } catch (error) {
-    at("stage").append(make("p", {}, `This browser shows no 3D view (${error.message}). Everything else works.`));
+    host.append(make("p", {}, `This browser shows no 3D view (${error.message}). Everything else works.`));
     return null;
   }
 }

@@ -1,9 +1,19 @@
 // What a hand does from a pose, as frames to step through: its stored path, or the pose alone.
 
+/** The paths of a row of which every state is there, one a pose. */
+export function exactPaths({ opening, exact }, row) {
+  return [...(opening?.exact ?? []), ...exact].filter((path) => path.row === row);
+}
+
+/** Whether a row can be shown: the chosen hand at once, every other one when the page is read. */
+export function canShow(run, row) {
+  return run.isWhole || (row === run.chosen && exactPaths(run, row).length === run.poses.length);
+}
+
 /** Frames of one hand's pose: {count, kind, position, rotation, at(frame)}. */
 export function motionOf(run, row, poseIndex) {
   const pose = run.poses[poseIndex];
-  const exact = run.exact.find((path) => path.row === row && path.pose === pose.name);
+  const exact = exactPaths(run, row).find((path) => path.pose === pose.name);
   if (exact) return exactMotion(exact, pose);
   const kept = run.thin.rows.indexOf(row);
   return kept >= 0 ? thinMotion(run, kept, row, pose) : poseOnly(row, pose);

@@ -21,12 +21,16 @@ export class Parallel {
     this.lines = make("canvas", { "aria-hidden": "true" });
     this.marks = make("canvas", { "aria-hidden": "true" });
     this.box = make("div", { class: "plot parallel" }, this.lines, this.marks);
+    this.box.style.height = `${HEIGHT}px`;
     this.svg = select(this.box).append("svg").attr("role", "img")
       .attr("aria-label", "Parallel coordinates of parameters and scores; the filters below do what brushes do.");
     this.box.addEventListener("click", (event) => this.#click(event));
     const scroller = make("div", { class: "scroller", tabindex: "0", role: "group", "aria-label": "Parallel coordinates, scrollable" }, this.box);
-    host.append(scroller, this.#filters());
-    onResize(scroller, (width) => this.#resize(width));
+    host.append(scroller);
+    onResize(scroller, (width) => {
+      if (!this.width) host.append(this.#filters());
+      this.#resize(width);
+    });
     state.on("select", () => this.#drawMarks());
     state.on("filter", () => this.#drawLines());
   }
@@ -39,7 +43,6 @@ export class Parallel {
     this.width = Math.max(outer, SPACING * this.columns.length);
     const step = (this.width - 64) / Math.max(this.columns.length - 1, 1);
     this.box.style.width = `${this.width}px`;
-    this.box.style.height = `${HEIGHT}px`;
     this.columns.forEach((column, i) => {
       column.x = 44 + i * step;
       column.y = scaleLinear(column.range, [HEIGHT - BOTTOM, TOP]);
@@ -52,9 +55,10 @@ export class Parallel {
   #drawAxes() {
     const svg = this.svg.attr("width", this.width).attr("height", HEIGHT);
     svg.selectAll("*").remove();
-    for (const column of this.columns) {
+    const axes = this.columns.map((column) => axisLeft(column.y).ticks(4)); // asks for the page's layout, so all at once
+    for (const [i, column] of this.columns.entries()) {
       const group = svg.append("g").attr("transform", `translate(${column.x},0)`);
-      group.call(axisLeft(column.y).ticks(4));
+      group.call(axes[i]);
       group.append("text").attr("class", "axis-label").attr("text-anchor", "start").attr("transform", `translate(-2,${TOP - 10}) rotate(-38)`)
         .text(column.unit ? `${column.label} [${column.unit}]` : column.label);
       const brush = brushY().extent([[-11, TOP], [11, HEIGHT - BOTTOM]])

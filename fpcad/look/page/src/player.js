@@ -1,7 +1,7 @@
 // The view of the selected hand: pose, slider, play button.
 
 import { make, format } from "./dom.js";
-import { motionOf } from "./motion.js";
+import { canShow, motionOf } from "./motion.js";
 
 const DEG = 180 / Math.PI;
 const SPEED = 40 / DEG; // turn of the tool while playing [rad/s]
@@ -18,7 +18,7 @@ export class Player {
     this.slider = make("input", { type: "range", min: "0", step: "1", "aria-label": "Tool along its path",
       oninput: () => (this.pause(), this.show(+this.slider.value)) });
     this.button = make("button", { type: "button", class: "play", onclick: () => (this.playing ? this.pause() : this.play()) }, "Play");
-    this.parts = make("input", { type: "checkbox", onchange: () => stage?.setParts(this.parts.checked) });
+    this.parts = make("input", { type: "checkbox", onchange: () => stage?.setParts(this.parts.checked, state.selected) });
     this.told = make("p", { class: "told", "aria-live": "off" });
     const reset = make("button", { type: "button", onclick: () => stage?.reset() }, "Reset view");
     const printed = meshes.length ? [make("label", { class: "chip" }, this.parts, "printed parts (chosen hand)")] : [];
@@ -26,12 +26,22 @@ export class Player {
       make("fieldset", { class: "chips" }, make("legend", { class: "hidden" }, "Pose"), ...poses.map(radio), ...printed),
       make("div", { class: "transport" }, this.button, this.slider, reset), this.told,
     );
-    state.on("select", (row) => this.#setHand(row));
-    if (state.selected !== null) this.#setHand(state.selected);
+    this.#enable(false);
+    state.on("select", () => this.showSelected());
+    this.showSelected();
   }
 
-  #setHand(row) {
+  #enable(moving) {
+    this.slider.disabled = this.button.disabled = !moving;
+    this.parts.disabled = !this.state.run.isWhole;
+  }
+
+  /** Shows the selected hand, as soon as the page holds what that takes. */
+  showSelected() {
+    const { run, selected: row } = this.state;
     this.pause();
+    if (row === null) return;
+    if (!canShow(run, row)) return void (this.told.textContent = "Reading the page …");
     this.stage?.showHand(row);
     this.#load();
   }
@@ -44,14 +54,15 @@ export class Player {
 
   /** Shows the same hand's path, now that it is known. */
   reload() {
-    if (!this.playing) this.#load();
+    if (this.motion === undefined) this.showSelected();
+    else if (!this.playing) this.#load();
   }
 
   #load() {
     this.motion = motionOf(this.state.run, this.state.selected, this.pose);
     this.stage?.placeTool(this.motion);
     this.slider.max = this.motion.count - 1;
-    this.slider.disabled = this.button.disabled = this.motion.count < 2;
+    this.#enable(this.motion.count > 1);
     this.show(this.motion.start);
   }
 

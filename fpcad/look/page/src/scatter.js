@@ -26,6 +26,7 @@ export class Scatter {
       this.points, this.axes, this.marks,
     );
     this.box.addEventListener("click", (event) => this.#click(event));
+    this.box.style.aspectRatio = 1 / this.#slope(); // its place is kept before it is drawn
     host.append(this.box);
     this.setView(view);
     onResize(this.box, (width) => this.#resize(width));
@@ -44,9 +45,14 @@ export class Scatter {
     if (this.width) this.#resize(this.width);
   }
 
+  /** Height over width. */
+  #slope() {
+    return this.view.axes ? 0.62 : 0.86;
+  }
+
   #resize(width) {
     this.width = width;
-    this.height = Math.round(width * (this.view.axes ? 0.62 : 0.86));
+    this.height = Math.round(width * this.#slope());
     const margin = this.view.axes ? { left: 42, right: 10, top: 26, bottom: 40 } : { left: 7, right: 7, top: 7, bottom: 7 };
     const scale = (values, range) => scaleLinear(padded(values), range);
     this.x = scale(this.view.x, [margin.left, width - margin.right]);
@@ -58,11 +64,12 @@ export class Scatter {
   }
 
   #drawAxes() {
+    const axes = this.view.axes ? [axisBottom(this.x).ticks(6), axisLeft(this.y).ticks(6)] : [];
     const svg = select(this.axes).attr("width", this.width).attr("height", this.height);
     svg.selectAll("*").remove();
-    if (!this.view.axes) return;
-    svg.append("g").attr("transform", `translate(0,${this.height - 40})`).call(axisBottom(this.x).ticks(6));
-    svg.append("g").attr("transform", "translate(42,0)").call(axisLeft(this.y).ticks(6));
+    if (!axes.length) return;
+    svg.append("g").attr("transform", `translate(0,${this.height - 40})`).call(axes[0]);
+    svg.append("g").attr("transform", "translate(42,0)").call(axes[1]);
     const label = (text) => svg.append("text").attr("class", "axis-label").text(text);
     label(this.view.xLabel).attr("x", this.width - 10).attr("y", this.height - 6).attr("text-anchor", "end");
     label(this.view.yLabel).attr("x", 8).attr("y", 16);

@@ -31,7 +31,6 @@ export class Stage {
     this.controls.addEventListener("change", () => this.render());
     this.canvas.addEventListener("keydown", (event) => this.#key(event));
     this.materials = materials();
-    this.meshes = run.meshes.map(printedPart);
     this.inTool = new Group(); // O of the pose, in the hand frame
     this.turned = new Group(); // O turned with the tool
     this.arrows = new Group();
@@ -64,15 +63,24 @@ export class Stage {
   showHand(row) {
     this.hand?.dispose();
     if (this.hand) this.scene.remove(this.hand.group);
-    this.hand = new Hand(this.run, row, this.materials, row === this.run.chosen ? this.meshes : []);
-    this.hand.showParts(this.wantsParts);
+    this.hand = new Hand(this.run, row, this.materials);
+    this.#showParts(row);
     this.scene.add(this.hand.group);
   }
 
-  setParts(wanted) {
+  setParts(wanted, row) {
     this.wantsParts = wanted;
-    this.hand?.showParts(wanted);
+    this.#showParts(row);
     this.render();
+  }
+
+  /** Printed parts are there for the chosen hand alone, and made when somebody asks for them. */
+  #showParts(row) {
+    if (this.wantsParts && row === this.run.chosen && !this.hand.parts) {
+      this.meshes ??= this.run.meshes.map(printedPart);
+      this.hand.addMeshes(this.meshes);
+    }
+    this.hand.showParts(this.wantsParts);
   }
 
   /** Puts the tool where a motion's hand holds it, before it turns. */

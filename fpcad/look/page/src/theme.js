@@ -1,6 +1,7 @@
 // Colours of canvases, taken from the page's style so that light, dark and print agree.
 
 import { interpolateViridis } from "d3-scale-chromatic";
+import { drawAllNow } from "./dom.js";
 
 export function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
@@ -23,6 +24,7 @@ export function onThemeChange(redraw) {
   const root = document.documentElement;
   addEventListener("beforeprint", () => {
     root.dataset.print = "yes";
+    drawAllNow();
     redraw();
   });
   addEventListener("afterprint", () => {
