@@ -1,0 +1,221 @@
+"""Trajectories on a servo bus: the host evaluates the quintics itself, a hundred times a second.
+
+What the firmware does beside its motors is done here for servos that have only their own brains: limits
+from end to end before anything moves, slowing down along the path, and faults that stop the hand.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpcad.run.bus import BusState, MotorBus
+from fpcad.run.driver import Played, Sample, Watch
+from fpcad.run.errors import (
+    CommandRefused,
+    HeldByUser,
+    LinkLost,
+    RunError,
+    ServoFault,
+    StoppedByUser,
+)
+from fpcad.run.knots import WireKnots, to_wire
+from fpcad.run.limits import JointLimits
+from fpcad.run.link import Clock
+from fpcad.run.motor_limits import motor_limits_of
+from fpcad.run.motor_map import MotorMap
+from fpcad.run.quintic import Knots
+from fpcad.run.sim.follower import PathFollower
+
+Array = NDArray[np.float64]
+
+PERIOD_S = 0.01
+_LONGEST_STEP_S = 0.03
+"""A host that was stalled goes on from where it was: path time slips, goals never jump."""
+WATCHDOG_S = 0.3
+_TRACKING_LIMIT_RAD = 0.15
+_STRIKES = 2
+"""Cycles in a row that make a fault of what may be noise."""
+_BRAKING_CYCLES = 100
+
+
+@dataclass(frozen=True)
+class ServoGuards:
+    """What stops a run, beside a servo's own complaints."""
+
+    current_ma: float
+    temperature_c: float = 70.0
+    tracking_rad: float = _TRACKING_LIMIT_RAD
+
+
+class ServoDriver:
+    """Joints behind a servo bus that is open; follows :class:`fpcad.run.driver.Driver`."""
+
+    def __init__(
+        self,
+        bus: MotorBus,
+        motors: MotorMap,
+        limits: JointLimits,
+        guards: ServoGuards,
+        clock: Clock = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self._bus, self._map, self._limits, self._guards = bus, motors, limits, guards
+        self._clock, self._sleep = clock, sleep
+        first = bus.identify()[0]
+        self.identity = f"{len(bus.names)} {first.model}, firmware {first.firmware}"
+        self._began_s = clock()
+        self._strikes = 0
+        self.slipped_s = 0.0
+        """Time that the path lost because the host came late."""
+
+    def ready(self, *, clear: bool) -> Sample:
+        """Torque on where the hand is; `clear` makes no difference, for nothing is latched here."""
+        state = self._bus.read_state()
+        self._map = self._map.settled(state.position_rad, self._limits)
+        self._bus.torque(True)
+        self._bus.watchdog(WATCHDOG_S)
+        return self._sample(self._bus.read_state(), None, "READY")
+
+    def play(self, knots: Knots, watch: Watch) -> Played:
+        wire = to_wire(knots)
+        follower = self._loaded(wire)
+        cycle = _Cycle(self._clock, self._sleep)
+        try:
+            while follower.rate > 0:
+                if watch.stops() > 0:
+                    follower.stop()
+                if watch.stops() > 1:
+                    self._let_go(follower, wire)
+                state = self._step(follower, cycle)
+                watch.on_sample(self._sample(state, follower, "RUNNING", len(wire.messages)))
+                self._guard(state, follower)
+        except (HeldByUser, StoppedByUser):
+            raise
+        except BaseException as error:
+            self._brake(follower, cycle, error)
+            raise
+        self.slipped_s = cycle.slipped_s
+        if follower.stopping:
+            self._held(follower, wire)
+        state = self._bus.read_state()
+        watch.on_sample(self._sample(state, follower, "READY", len(wire.messages)))
+        return Played(len(wire.messages), 0, state.bad_frames, wire.error_rad, "READY")
+
+    def _loaded(self, wire: WireKnots) -> PathFollower:
+        """A follower with all knots, each checked as the firmware would."""
+        present = self._map.to_joints(self._bus.read_state().position_rad)
+        gears = self._map.transmission, motor_limits_of(self._limits)
+        follower = PathFollower(self._limits, len(wire.messages), present, gears)
+        for knot in wire.messages:
+            refusal = follower.offer(knot, present)
+            if refusal is not None:
+                reason, joint = refusal
+                raise CommandRefused(
+                    f"{self._limits.names[joint]}: {reason.name.lower().replace('_', ' ')} "
+                    f"at {knot.t_us / 1e6:.2f} s"
+                ).leaving("It holds where it is.")
+        follower.end(len(wire.messages))
+        follower.start()
+        return follower
+
+    def _step(self, follower: PathFollower, cycle: _Cycle) -> BusState:
+        follower.step(cycle.wait())
+        self._bus.write_goals(self._map.to_bus(follower.command + follower.preload))
+        return self._bus.read_state()
+
+    def _guard(self, state: BusState, follower: PathFollower) -> None:
+        complaint = self._complaint(state, follower)
+        self._strikes = self._strikes + 1 if complaint else 0
+        if complaint and self._strikes >= _STRIKES:
+            raise ServoFault(complaint)
+
+    def _complaint(self, state: BusState, follower: PathFollower) -> str | None:
+        joints, motors = self._map.joints, self._bus.names
+        error = follower.error(self._map.to_joints(state.position_rad))
+        for names, values, limit, what in (
+            (joints, error, self._guards.tracking_rad, "does not follow, {:.2f} rad behind"),
+            (motors, state.current_ma, self._guards.current_ma, "draws {:.0f} mA"),
+            (motors, state.temperature_c, self._guards.temperature_c, "is at {:.0f} degrees C"),
+        ):
+            worst = int(np.argmax(values))
+            if values[worst] > limit:
+                place = f"at {follower.path_us / 1e6:.2f} s of the path"
+                return (
+                    f"{names[worst]} {what.format(values[worst])} {place}; find out what blocks it"
+                )
+        return None
+
+    def _brake(self, follower: PathFollower, cycle: _Cycle, error: BaseException) -> None:
+        """Bring the joints that still listen to rest along the path, without asking anything."""
+        follower.stop()
+        with suppress(RunError):
+            for _ in range(_BRAKING_CYCLES):
+                if follower.rate == 0:
+                    break
+                follower.step(cycle.wait())
+                self._bus.write_goals(self._map.to_bus(follower.command + follower.preload))
+        if isinstance(error, RunError) and not isinstance(error, LinkLost):
+            error.leaving("The other joints slowed down along the path and hold.")
+
+    def _let_go(self, follower: PathFollower, wire: WireKnots) -> NoReturn:
+        self._bus.torque(False)
+        raise StoppedByUser(f"stopped {_place(follower, wire)}: torque is off, the hand lets go")
+
+    def _held(self, follower: PathFollower, wire: WireKnots) -> NoReturn:
+        raise HeldByUser(
+            f"held {_place(follower, wire)}: the hand keeps its grip, motors stay on. "
+            f"{self._bus.without_host}"
+        )
+
+    def _sample(
+        self, state: BusState, follower: PathFollower | None, word: str, sent: int = 0
+    ) -> Sample:
+        position = self._map.to_joints(state.position_rad)
+        return Sample(
+            self._clock() - self._began_s,
+            0.0 if follower is None else follower.path_us / 1e6,
+            word,
+            "NONE",
+            position,
+            position if follower is None else follower.command,
+            0 if follower is None else follower.queued,
+            state.bad_frames,
+            0,
+            sent,
+            state.current_ma,
+            state.temperature_c,
+        )
+
+
+class _Cycle:
+    """The beat of the bus; how long each step of the path lasts."""
+
+    def __init__(self, clock: Clock, sleep: Callable[[float], None]) -> None:
+        self._clock, self._sleep = clock, sleep
+        self._last_s = self._due_s = clock()
+        self.slipped_s = 0.0
+
+    def wait(self) -> float:
+        """Wait for the next beat; the step [s] that the path takes, never a jump."""
+        self._due_s += PERIOD_S
+        ahead = self._due_s - self._clock()
+        if ahead > 0:
+            self._sleep(ahead)
+        else:
+            self._due_s -= ahead
+        now = self._clock()
+        passed, self._last_s = now - self._last_s, now
+        step = min(passed, _LONGEST_STEP_S)
+        self.slipped_s += passed - step
+        return step
+
+
+def _place(follower: PathFollower, wire: WireKnots) -> str:
+    return f"at {follower.path_us / 1e6:.2f} s of {wire.duration_us / 1e6:.2f} s"
