@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tests.make.build_check import check_build
+from tests.make.scene_check import check_scene
 
 RADIUS, TOOL_RADIUS = 0.008, 0.006
 URDF = """<?xml version="1.0"?>
@@ -93,6 +95,23 @@ def test_finished_build_moves_its_tool_in_contact(built_clay: Path):
     check = check_build(built_clay)
     assert check.violations == []
     assert len(check.figures) == 3
+
+
+def test_finished_build_moves_its_tool_in_contact_for_mujoco_too(built_clay: Path):
+    check = check_scene(built_clay)
+    assert check.violations == []
+    assert len(check.figures) == 3
+    for figures in check.figures.values():
+        assert figures.keys() == {"gap at knots [mm]", "gap at midpoints [mm]"}
+
+
+def test_mujoco_finds_a_thicker_tool_in_the_way(built_clay: Path, tmp_path: Path):
+    copy = shutil.copytree(built_clay, tmp_path / "clay", ignore=shutil.ignore_patterns("store"))
+    scene = copy / "hand" / "mjcf" / "scene.xml"
+    text, radius = scene.read_text(), f'size="{0.006!r}"'
+    assert text.count(radius) == 1
+    scene.write_text(text.replace(radius, f'size="{0.00605!r}"'))
+    assert any("index_distal is -0.05" in fault for fault in check_scene(copy).violations)
 
 
 def test_good_files_have_no_faults(tmp_path: Path):

@@ -8,11 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-import mujoco
 import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]
 import yourdfpy
 from numpy.typing import NDArray
+
+from tests.make.description.engine import mujoco
 
 Array = NDArray[np.float64]
 Poses = dict[str, Array]
@@ -23,7 +24,8 @@ class Yourdfpy:
 
     def __init__(self, urdf: Path) -> None:
         self.robot = yourdfpy.URDF.load(str(urdf), load_meshes=False)
-        self.mass = sum(link.inertial.mass for link in self.robot.robot.links)
+        bodies = [link.inertial for link in self.robot.robot.links if link.inertial]
+        self.mass = sum(body.mass or 0.0 for body in bodies)
 
     def poses(self, joints: Mapping[str, float]) -> Poses:
         self.robot.update_cfg(joints)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import mujoco
+from typing import Any
+
 import numpy as np
 import pytest
 from ruamel.yaml import YAML
@@ -11,6 +12,7 @@ from fpcad.make.servo import servo_of
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.spec.catalogue import motor
 from tests.make.description.conftest import JOINTS, TRAJECTORIES
+from tests.make.description.engine import mujoco
 from tests.make.hands import CENTRE, CLAY
 
 SECOND = 500
@@ -27,7 +29,7 @@ def scene(described):
     return mujoco.MjModel.from_xml_path(str(described[CENTRE] / "mjcf" / "scene.xml"))
 
 
-def settle(model: mujoco.MjModel, command: np.ndarray, steps: int = SECOND) -> mujoco.MjData:
+def settle(model: Any, command: np.ndarray, steps: int = SECOND) -> Any:
     """The hand after a while at a command of its motors, from straight fingers."""
     data = mujoco.MjData(model)
     data.ctrl[:] = command

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import xml.etree.ElementTree as ET
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]
@@ -30,7 +31,8 @@ def limits(package) -> dict:
 def expanded(package: Path, **arguments: str) -> str:
     """The URDF that the package's xacro stands for."""
     file = package / "urdf" / "clay.urdf.xacro"
-    return xacro.process_file(str(file), mappings=arguments).toxml()
+    document: Any = xacro.process_file(str(file), mappings=arguments)
+    return document.toxml()
 
 
 def load(package: Path, tmp_path: Path, **arguments: str) -> yourdfpy.URDF:
