@@ -102,12 +102,12 @@ def programs(bench: Workbench, candidates: list[Candidate]) -> Iterator[Figure]:
 
     facets = cone_facets(bench.spec.statics)
 
-    def own_least(*arguments: Any) -> float | None:
-        held = least_torque(*arguments, facets)
+    def own_least(W: Any, T: Any, load: Any, cap: float) -> float | None:
+        held = least_torque(W, T, load, cap, facets)
         return None if held is None else held.largest_torque_nmm
 
-    def own_greatest(*arguments: Any) -> float:
-        return greatest_load(*arguments, facets)
+    def own_greatest(W: Any, M: Any, load: Any, limit: Any) -> float:
+        return greatest_load(W, M, load, limit, facets)
 
     contests = {
         "least torque": ([least for least, _ in states], own_least, highs_least_torque),

@@ -84,7 +84,7 @@ def greatest_load(
 
 def _cones(facets: Array, size: int) -> Array:
     """(n m, 3n) rows that are <= 0 where every contact's force is inside its pyramid."""
-    return np.kron(np.eye(size // 3), facets)
+    return np.asarray(np.kron(np.eye(size // 3), facets), dtype=np.float64)
 
 
 def _rows(wrench: Array, cones: Array, torque: Array, limit: Array) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -22,6 +22,8 @@ from fpcad.model.pose import HAND_SIZE
 
 Array = NDArray[np.float64]
 MX = ca.MX
+Expression = Any
+"""MX, or the DM of a constant."""
 
 QP_OPTIONS = {"error_on_fail": False, "daqp": {"primal_tol": 1e-11}}
 LP_OPTIONS = {
@@ -56,36 +58,42 @@ class GraphStep(NamedTuple):
     unheld: Array  # (1,) largest violation of both programs of equilibrium [N, 10 N mm, N m]
 
 
+class State(NamedTuple):
+    """Where a hand is on a path."""
+
+    d: MX  # design
+    h: MX  # (6,) pose of H in O
+    turn: MX  # tool angle [rad]
+    x: MX  # (n_u + 4n,) state [u, a]
+
+
 @cache
 def step_graph(kernels: PoseKernels, settings: GraphSettings) -> Kernel:
     """(d, h, turn, x, direction, dt, *values of a Load) -> :class:`GraphStep`'s fields.
 
     A load's matrix goes in row by row, as one vector.
     """
-    program = kernels.path.rate_program
-    d, h = MX.sym("d", program.size1_in(0)), MX.sym("h", HAND_SIZE)
-    x = MX.sym("x", kernels.layout.size - HAND_SIZE)
-    turn, direction, dt = MX.sym("turn"), MX.sym("direction"), MX.sym("dt")
+    start = d, h, turn, x = _state_symbols(kernels)
+    direction, dt = MX.sym("direction"), MX.sym("dt")
     n_u = kernels.layout.n_u
     load = MX.sym("force"), MX.sym("cap"), MX.sym("motors", n_u * n_u), MX.sym("limit", n_u)
     stages: list[tuple[MX, ...]] = []
     for fraction in (0.0, 0.5, 0.5, 1.0):
         at = x + fraction * dt * stages[-1][0] if stages else x
-        state = d, h, turn + direction * fraction * dt, at
+        state = State(d, h, turn + direction * fraction * dt, at)
         stages.append(_rates(kernels, settings, state, direction, dt))
     rates, sliding, determinants, unmet = zip(*stages, strict=True)
     moved = x + dt / 6 * _simpson(rates)
-    reached = d, h, turn + direction * dt
-    projected, violation = _projected(kernels, settings, (*reached, moved))
+    end, violation = _projected(kernels, settings, State(d, h, turn + direction * dt, moved))
     outputs = [
-        projected,
+        end.x,
         dt / 6 * _simpson(sliding),
         ca.mmin(ca.vertcat(*determinants)),
         violation,
         ca.mmax(ca.vertcat(*unmet)),
-        *_held(kernels, (*reached, projected), direction, load),
+        *_held(kernels, end, direction, load),
     ]
-    return Kernel(ca.Function("step", [d, h, turn, x, direction, dt, *load], outputs))
+    return Kernel(ca.Function("step", [*start, direction, dt, *load], outputs))
 
 
 def _simpson(stages: tuple[MX, ...]) -> MX:
@@ -96,7 +104,7 @@ def _simpson(stages: tuple[MX, ...]) -> MX:
 def _rates(
     kernels: PoseKernels,
     settings: GraphSettings,
-    state: tuple[MX, MX, MX, MX],
+    state: State,
     direction: MX,
     dt: MX,
 ) -> tuple[MX, MX, MX, MX]:
@@ -119,33 +127,40 @@ def _rates(
     return x_rate, sliding, determinant, unmet
 
 
-def _projected(
-    kernels: PoseKernels, settings: GraphSettings, state: tuple[MX, MX, MX, MX]
-) -> tuple[MX, MX]:
+def _projected(kernels: PoseKernels, settings: GraphSettings, moved: State) -> tuple[State, MX]:
     """The state after shortest Newton steps onto contact, and its violation.
 
     Two steps by the contact equations alone do where no margin is in the way; else two steps by
     quadratic programs that know the margins.
     """
-    *at, moved = state
     bounds = ca.DM(settings.lower), ca.DM(settings.upper)
-    quick = kernels.path.newton(*at, kernels.path.newton(*at, moved, *bounds), *bounds)
-    violation = kernels.path.violation(*at, quick)
-    newton = kernels.path.newton
-    state_symbols = [MX.sym(name, newton.size1_in(i)) for i, name in enumerate("dhtx")]
-    given = [*state_symbols, MX.sym("quick", moved.numel()), MX.sym("violation")]
-    keep = ca.Function("keep", given, given[-2:])
-    clear = state_symbols[-1]
+    quick = moved
     for _ in range(2):
-        clear = _step_with_margins(kernels, settings, (*state_symbols[:-1], clear))
-    slow = ca.Function("slow", given, [clear, kernels.path.violation(*state_symbols[:-1], clear)])
-    chosen = ca.Function.if_else("projected", keep, slow)
-    return chosen(violation <= settings.contact_tolerance, *state, quick, violation)
+        quick = quick._replace(x=kernels.path.newton(*quick, *bounds))
+    violation = kernels.path.violation(*quick)
+    projection = _where_margins_are_in_the_way(kernels, settings)
+    touches = violation <= settings.contact_tolerance
+    x, violation = projection(touches, *moved, quick.x, violation)
+    return moved._replace(x=x), violation
 
 
-def _step_with_margins(
-    kernels: PoseKernels, settings: GraphSettings, state: tuple[MX, MX, MX, MX]
-) -> MX:
+def _where_margins_are_in_the_way(kernels: PoseKernels, settings: GraphSettings) -> ca.Function:
+    """(touches, d, h, turn, x, quick x, its violation) -> x and its violation.
+
+    Only the branch that is taken is computed.
+    """
+    state = _state_symbols(kernels)
+    quick, violation = MX.sym("quick", state.x.numel()), MX.sym("violation")
+    given = [*state, quick, violation]
+    slow = state
+    for _ in range(2):
+        slow = slow._replace(x=_step_with_margins(kernels, settings, slow))
+    keep = ca.Function("keep", given, [quick, violation])
+    replace = ca.Function("replace", given, [slow.x, kernels.path.violation(*slow)])
+    return ca.Function.if_else("projected", keep, replace)
+
+
+def _step_with_margins(kernels: PoseKernels, settings: GraphSettings, state: State) -> MX:
     """The state after one shortest Newton step that keeps the margins."""
     d, h, turn, moved = state
     own = slice(HAND_SIZE, kernels.layout.size)
@@ -170,7 +185,7 @@ def _step_with_margins(
 
 def _held(
     kernels: PoseKernels,
-    state: tuple[MX, MX, MX, MX],
+    state: State,
     direction: MX,
     load: tuple[MX, MX, MX, MX],
 ) -> tuple[MX, MX, MX]:
@@ -198,7 +213,7 @@ def _held(
     return torque * TORQUE_UNIT_NMM, tip, ca.fmax(torque_excess, tip_excess)
 
 
-def _least(cost: MX, rows: MX, upper: MX, bound: MX) -> tuple[MX, MX]:
+def _least(cost: Expression, rows: MX, upper: Expression, bound: Expression) -> tuple[MX, MX]:
     """Last variable of the least-cost solution of rows x <= bound, and what is violated.
 
     The first six rows are equations, and the last variable is not negative.
@@ -211,6 +226,11 @@ def _least(cost: MX, rows: MX, upper: MX, bound: MX) -> tuple[MX, MX]:
     x = solver(g=cost, a=rows, lbx=lower, ubx=upper, lba=low, uba=bound)["x"]
     excess = rows @ x - bound
     return x[-1], ca.fmax(ca.mmax(excess), -ca.mmin(excess[:6]))
+
+
+def _state_symbols(kernels: PoseKernels) -> State:
+    newton = kernels.path.newton
+    return State(*[MX.sym(name, newton.size1_in(i)) for i, name in enumerate(State._fields)])
 
 
 def _solver(
