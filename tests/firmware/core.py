@@ -91,6 +91,10 @@ class CoreFollower:
     def command(self) -> np.ndarray:
         return np.array(self._core.look().command[: self._core.joints]) / 1e6
 
+    @property
+    def preload(self) -> np.ndarray:
+        return np.array(self._core.look().preload[: self._core.joints]) / 1e6
+
     def keep(self, count: int) -> None:
         self._core.call("keep_knots", ctypes.c_uint16(count))
 
