@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
-import trimesh
-
 from fpcad.make.bom import bill_of_materials, bom_csv
 from fpcad.make.description import LinkBody, describe, write_description
+from fpcad.make.gates.all_gates import pass_gates
+from fpcad.make.gates.finding import Severity
+from fpcad.make.gates.table import FILE as CHECKS
+from fpcad.make.gates.table import findings_csv
 from fpcad.make.inertia import inertia_of
-from fpcad.make.mesh import check_apart, in_metres, stl_bytes
+from fpcad.make.mesh import in_metres, stl_bytes
+from fpcad.make.parts.assembly import Progress, make_assembly
 from fpcad.make.parts.dimensions import finger_dimensions
-from fpcad.make.parts.assembly import Progress, make_parts
 from fpcad.make.parts.part import Part
 from fpcad.make.parts.step import step_bytes
-from fpcad.make.reach import flexion_reach
 from fpcad.make.trajectory import Trajectory
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.catalogue import motor
 from fpcad.spec.schema import Spec
 from fpcad.store import write_whole
-from fpcad.units import DEG_PER_RAD, RAD_PER_DEG
 
 log = logging.getLogger(__name__)
 
@@ -45,13 +45,15 @@ def make_hand(
     the trajectories, by pose. Returns the files written. Raises
     :class:`fpcad.errors.MakeError` naming the part that cannot be made.
     """
-    row = motor(spec.motors.type)
-    parts = make_parts(spec, geometry, progress)
-    progress("interference")
-    check_apart(rest_pairs(parts, geometry))
-    _warn_of_stops(spec, parts, geometry)
+    assembly = make_assembly(spec, geometry, progress)
+    parts, row = assembly.parts, motor(spec.motors.type)
+    findings = pass_gates(spec, assembly, geometry, trajectories, progress)
+    for finding in findings:
+        if finding.severity is Severity.WARNING:
+            log.info("%s", finding)
     progress("files")
     files = _part_files(parts, out / "parts")
+    files.append(write_whole(out / "parts" / CHECKS, findings_csv(findings)))
     dimensions = finger_dimensions(spec, geometry)
     bill = bill_of_materials(spec, dimensions, parts, len(geometry.fingers), row.mass_g)
     files.append(write_whole(out / "parts" / "bom.csv", bom_csv(bill)))
@@ -63,18 +65,6 @@ def make_hand(
     files += write_description(robot, trajectories, out / "hand")
     files.append(write_whole(out / "hand" / "transmission.yaml", transmission_yaml(spec)))
     return files
-
-
-def _warn_of_stops(spec: Spec, parts: Sequence[Part], geometry: HandGeometry) -> None:
-    low, high = spec.hand.joint_limits_deg["mcp_flex"]
-    reach = flexion_reach(parts, geometry, (low * RAD_PER_DEG, high * RAD_PER_DEG))
-    for finger, (free_low, free_high) in reach.items():
-        free = free_low * DEG_PER_RAD, free_high * DEG_PER_RAD
-        if free[0] > low + 1e-9 or free[1] < high - 1e-9:
-            log.warning(
-                "%s: the palm stops MCP flexion near [%.0f, %.0f] deg; the spec allows [%g, %g]",
-                *(finger, *free, low, high),
-            )
 
 
 def _part_files(parts: Sequence[Part], folder: Path) -> list[Path]:
@@ -103,30 +93,3 @@ def link_bodies(spec: Spec, parts: Sequence[Part]) -> dict[str, LinkBody]:
             tuple((part.name, part.material) for part in own),
         )
     return bodies
-
-
-def rest_pairs(
-    parts: Sequence[Part], geometry: HandGeometry
-) -> Iterator[tuple[str, trimesh.Trimesh, str, trimesh.Trimesh]]:
-    """Pairs of parts that must not meet when a finger is straight: its own, and each with the palm.
-
-    Straight fingers of one hand may cross each other (thumb and middle of a short palm), so pairs
-    of different fingers are no matter of the parts but of the posture.
-    """
-    meshes = {part.name: part.mesh for part in parts}
-    links = {part.name: part.link for part in parts}
-    palm = meshes.pop("palm")
-    straight = {
-        name: mesh.copy().apply_translation(
-            [geometry.proximal_length_mm if links[name] == "distal" else 0.0, 0.0, 0.0]
-        )
-        for name, mesh in meshes.items()
-    }
-    names = list(straight)
-    for i, a in enumerate(names):
-        for b in names[i + 1 :]:
-            yield a, straight[a], b, straight[b]
-    for finger in geometry.fingers:
-        for name, mesh in straight.items():
-            moved = mesh.copy().apply_transform(geometry.T_palm_root[finger])
-            yield "palm", palm, f"{finger} {name}", moved

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fpcad.make.parts.dimensions import Dimensions
 from fpcad.make.parts.solids import Solid, box, rod
 
-PIN_BOTTOM_MM = 0.6  # wall between the through hole of flexion and the stub holes of abduction
+PIN_BOTTOM_MM = 0.9  # wall between the through hole of flexion and the stub holes of abduction
 
 
 def mcp_cross(d: Dimensions) -> Solid:
