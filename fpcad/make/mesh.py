@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import manifold3d
 import numpy as np
 import trimesh
@@ -60,25 +58,8 @@ def stl_bytes(mesh: trimesh.Trimesh) -> bytes:
     return bytes(export_stl(mesh))
 
 
-def common_volume_mm3(a: trimesh.Trimesh, b: trimesh.Trimesh) -> float:
-    """Volume [mm^3] that two meshes [mm] share."""
-    if np.any(a.bounds[0] > b.bounds[1]) or np.any(b.bounds[0] > a.bounds[1]):
-        return 0.0
-    return float((_manifold(a) ^ _manifold(b)).volume())
-
-
-def check_apart(pairs: Iterable[tuple[str, trimesh.Trimesh, str, trimesh.Trimesh]]) -> None:
-    """Raise :class:`MakeError` naming the first pair of meshes [mm] that interfere."""
-    for name_a, a, name_b, b in pairs:
-        volume = common_volume_mm3(a, b)
-        if volume > INTERFERENCE_MM3:
-            raise MakeError(
-                f"parts {name_a} and {name_b} interfere: they share {volume:.3g} mm^3, "
-                f"at most {INTERFERENCE_MM3:g} mm^3 is allowed"
-            )
-
-
-def _manifold(mesh: trimesh.Trimesh) -> manifold3d.Manifold:
+def manifold_of(mesh: trimesh.Trimesh) -> manifold3d.Manifold:
+    """A mesh [mm] for exact booleans; :class:`MakeError` where it is not closed."""
     body = manifold3d.Manifold(
         manifold3d.Mesh64(
             vert_properties=np.array(mesh.vertices, dtype=np.float64),

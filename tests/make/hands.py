@@ -44,6 +44,6 @@ def parts_of(values: tuple[float, ...]) -> list[Part]:
     return make_parts(CLAY, geometry_of(values), lambda _: None)
 
 
-def with_print(**settings: float) -> Spec:
+def with_print(**settings: object) -> Spec:
     """Clay's spec with other print settings."""
     return CLAY.model_copy(update={"print": CLAY.print.model_copy(update=settings)})

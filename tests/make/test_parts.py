@@ -11,6 +11,7 @@ import trimesh
 from fpcad.errors import FpcadError
 from fpcad.make.mesh import mesh_of
 from fpcad.make.parts.dimensions import finger_dimensions
+from fpcad.make.parts.mcp import PIN_BOTTOM_MM
 from fpcad.make.parts.skin import distal_skin
 from fpcad.make.parts.solids import ball
 from tests.make.hands import CENTRE, CLAY, CORNERS, geometry_of, parts_of, with_print
@@ -69,7 +70,7 @@ def test_distal_skin_has_its_closed_form_volume(clay_parts):
 def test_cross_is_a_cube_less_its_pin_holes(clay_parts):
     d = DIMENSIONS
     section = math.pi * d.pin_hole**2
-    holes = section * 2 * d.hub + 2 * section * (d.hub - d.pin_hole - 0.6)
+    holes = section * 2 * d.hub + 2 * section * (d.hub - d.pin_hole - PIN_BOTTOM_MM)
     expected = (2 * d.hub) ** 3 - holes
     assert clay_parts["mcp_cross"].solid.Volume() == pytest.approx(expected, rel=1e-6)
 
