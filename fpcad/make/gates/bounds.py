@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from fpcad.make.gates.bodies import SPREAD_MM, Body
 from fpcad.make.grip import segment_distance
@@ -35,7 +35,7 @@ def surface_distance(still: Body, b: Body, T_b: Array) -> Array:
     length = float(np.linalg.norm(b.axis[1] - b.axis[0]))
     along = np.linspace(b.axis[0], b.axis[1], 2 + int(length / AXIS_SPACING_MM))
     reach = b.radius + SPREAD_MM + length / (len(along) - 1) / 2
-    nearest, _ = cKDTree(still.points).query(
+    nearest, _ = KDTree(still.points).query(
         _moved(along, T_b).reshape(-1, 3), distance_upper_bound=reach + TOLD_BOUND_MM
     )
     gap = nearest.reshape(len(T_b), -1).min(axis=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 from trimesh.sample import sample_surface
 
 from fpcad.make.gates.finding import Finding, Severity, point
@@ -71,6 +71,6 @@ def _largest_patch(points: Array) -> NDArray[np.int64]:
     """Numbers of the points (n, 3) of the largest cluster."""
     if not len(points):
         return np.empty(0, dtype=np.int64)
-    pairs = cKDTree(points).query_pairs(PATCH_MM, output_type="ndarray")
+    pairs = KDTree(points).query_pairs(PATCH_MM, output_type="ndarray")
     groups = trimesh.graph.connected_component_labels(pairs, node_count=len(points))
     return np.flatnonzero(groups == np.bincount(groups).argmax())
