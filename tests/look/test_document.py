@@ -68,7 +68,9 @@ def test_packed_numbers_come_back_as_they_were():
         (pack.quantized([]), []),
     ]
     for reference, values in told:
-        assert unpacked(reference, {"a": pack.text()}) == pytest.approx(np.array(values), nan_ok=True)
+        assert unpacked(reference, {"a": pack.text()}) == pytest.approx(
+            np.array(values), nan_ok=True
+        )
 
 
 def test_dimensions_are_those_that_parts_are_made_of(real_run: Run):

@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page
 
-from fpcad.errors import StoreError, ToolchainError
 from fpcad.commands.explore import live_view
+from fpcad.errors import StoreError, ToolchainError
 from fpcad.look.run import load
 from fpcad.look.serve import LOOPBACK, TOKEN_HEADER, LiveView, open_server
 from fpcad.pipeline.by_hand import REASON

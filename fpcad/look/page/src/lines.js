@@ -37,8 +37,9 @@ export class Lines {
 
   #draw(width) {
     this.width = width;
+    this.box.style.aspectRatio = width / HEIGHT;
     const { view, svg } = this;
-    svg.attr("width", width).attr("height", HEIGHT).selectAll("*").remove();
+    svg.attr("viewBox", [0, 0, width, HEIGHT]).selectAll("*").remove();
     this.x = scaleLinear([Math.min(0, view.x[0] ?? 0), max(view.x) || 1], [MARGIN.left, width - MARGIN.right]);
     this.y = scaleLinear([0, 1], [HEIGHT - MARGIN.bottom, MARGIN.top]);
     svg.append("g").attr("transform", `translate(0,${HEIGHT - MARGIN.bottom})`).call(axisBottom(this.x).ticks(width / 90));

@@ -35,7 +35,7 @@ async function start() {
   performance.mark("fpcad:stage");
   onThemeChange(() => {
     figures.forEach((figure) => figure.redraw());
-    stage?.render();
+    player?.redraw();
   });
   await whole;
   if (player) {

@@ -5,7 +5,7 @@ import { axisLeft } from "d3-axis";
 import { scaleLinear } from "d3-scale";
 import { select } from "d3-selection";
 import { make, format, onResize } from "./dom.js";
-import { colour, fit } from "./theme.js";
+import { colour, fit, isPrinting } from "./theme.js";
 
 const HEIGHT = 340;
 const TOP = 112;
@@ -43,6 +43,7 @@ export class Parallel {
     this.width = Math.max(outer, SPACING * this.columns.length);
     const step = (this.width - 64) / Math.max(this.columns.length - 1, 1);
     this.box.style.width = `${this.width}px`;
+    this.box.style.aspectRatio = this.width / HEIGHT;
     this.columns.forEach((column, i) => {
       column.x = 44 + i * step;
       column.y = scaleLinear(column.range, [HEIGHT - BOTTOM, TOP]);
@@ -53,7 +54,7 @@ export class Parallel {
   }
 
   #drawAxes() {
-    const svg = this.svg.attr("width", this.width).attr("height", HEIGHT);
+    const svg = this.svg.attr("viewBox", [0, 0, this.width, HEIGHT]);
     svg.selectAll("*").remove();
     const axes = this.columns.map((column) => axisLeft(column.y).ticks(4)); // asks for the page's layout, so all at once
     for (const [i, column] of this.columns.entries()) {
@@ -128,14 +129,17 @@ export class Parallel {
         context.strokeStyle = paints[front[row]];
         this.#trace(context, row);
       }
-      if (from + CHUNK < ordered.length) requestAnimationFrame(() => piece(from + CHUNK));
+      if (from + CHUNK >= ordered.length) return;
+      if (isPrinting()) piece(from + CHUNK);
+      else requestAnimationFrame(() => piece(from + CHUNK));
     };
     piece(0);
   }
 
   #drawMarks() {
     if (!this.width) return;
-    const context = fit(this.marks, this.width, HEIGHT);
+    const context = isPrinting() ? this.lines.getContext("2d") : fit(this.marks, this.width, HEIGHT);
+    context.globalAlpha = 1;
     const { chosen } = this.state.run;
     const marked = [[chosen, colour("chosen")], [this.state.selected, colour("selected")]];
     for (const [row, paint] of marked.filter(([row]) => row !== null)) {

@@ -66,6 +66,11 @@ export class Player {
     this.show(this.motion.start);
   }
 
+  /** Shows the same frame in the colours of now. */
+  redraw() {
+    if (this.motion) this.show(this.frame);
+  }
+
   show(frame) {
     this.frame = frame;
     const at = this.motion.at(frame), pose = this.state.run.poses[this.pose];

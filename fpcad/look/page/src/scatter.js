@@ -5,7 +5,7 @@ import { axisBottom, axisLeft } from "d3-axis";
 import { scaleLinear } from "d3-scale";
 import { select } from "d3-selection";
 import { make, onResize } from "./dom.js";
-import { colour, fit, scoreColour } from "./theme.js";
+import { colour, fit, isPrinting, scoreColour } from "./theme.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const SHADES = 32;
@@ -23,7 +23,7 @@ export class Scatter {
     this.box = make(
       "div",
       { class: "plot", tabindex: "0", role: "group", onkeydown: (e) => this.#key(e) },
-      this.points, this.axes, this.marks,
+      this.points, this.marks, this.axes,
     );
     this.box.addEventListener("click", (event) => this.#click(event));
     this.box.style.aspectRatio = 1 / this.#slope(); // its place is kept before it is drawn
@@ -57,7 +57,6 @@ export class Scatter {
     const scale = (values, range) => scaleLinear(padded(values), range);
     this.x = scale(this.view.x, [margin.left, width - margin.right]);
     this.y = scale(this.view.y, [this.height - margin.bottom, margin.top]);
-    this.box.style.height = `${this.height}px`;
     this.#drawAxes();
     this.drawPoints();
     this.drawMarks();
@@ -65,7 +64,7 @@ export class Scatter {
 
   #drawAxes() {
     const axes = this.view.axes ? [axisBottom(this.x).ticks(6), axisLeft(this.y).ticks(6)] : [];
-    const svg = select(this.axes).attr("width", this.width).attr("height", this.height);
+    const svg = select(this.axes).attr("viewBox", [0, 0, this.width, this.height]);
     svg.selectAll("*").remove();
     if (!axes.length) return;
     svg.append("g").attr("transform", `translate(0,${this.height - 40})`).call(axes[0]);
@@ -122,7 +121,7 @@ export class Scatter {
 
   drawMarks() {
     if (!this.width) return;
-    const context = fit(this.marks, this.width, this.height);
+    const context = isPrinting() ? this.points.getContext("2d") : fit(this.marks, this.width, this.height);
     const { chosen, clusters } = this.state.run;
     if (this.view.leaders) clusters.forEach(({ row }, i) => this.#label(context, row, `${i + 1}`));
     if (chosen !== null) this.#ring(context, chosen, colour("chosen"), 10, true);

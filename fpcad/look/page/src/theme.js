@@ -18,6 +18,9 @@ export function scoreColour(score) {
   return interpolateViridis(low + ((high - low) * score) / 100);
 }
 
+/** Whether the page is drawn for paper: each figure then on one canvas, since a second would hide it. */
+export const isPrinting = () => "print" in document.documentElement.dataset;
+
 /** Calls back when light turns dark or the page is printed. */
 export function onThemeChange(redraw) {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
@@ -33,7 +36,10 @@ export function onThemeChange(redraw) {
   });
 }
 
-/** Makes a canvas fit its box at the screen's resolution; returns its context in CSS pixels. */
+/**
+ * Makes a canvas fit its box at the screen's resolution, which also empties it; returns its context in
+ * CSS pixels.
+ */
 export function fit(canvas, width, height) {
   const ratio = Math.min(devicePixelRatio || 1, 2);
   canvas.width = Math.round(width * ratio);
@@ -43,6 +49,5 @@ export function fit(canvas, width, height) {
   // Drawn by the processor: where graphics are emulated, thousands of points take seconds else.
   const context = canvas.getContext("2d", { willReadFrequently: true });
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, width, height);
   return context;
 }
