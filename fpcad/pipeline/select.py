@@ -10,6 +10,7 @@ import pyarrow as pa
 
 from fpcad.pipeline.evaluate import FILE as METRICS_FILE
 from fpcad.pipeline.evaluate import evaluate_candidate
+from fpcad.pipeline.makeable import refuse_early
 from fpcad.pipeline.paths import FILE as PATHS
 from fpcad.pipeline.paths import read_paths, write_paths
 from fpcad.pipeline.sample import read_candidates
@@ -29,9 +30,10 @@ METRICS, SELECTED = "metrics.parquet", "selected.json"
 def select(build: Build) -> Counts:
     """Rank all candidates, choose one, and keep the paths that the spec asks for.
 
-    Every hand that was evaluated counts as makeable until making it has failed; see :func:`refuse`.
+    Hands whose numbers alone forbid to make them are out at once. Every other one that was
+    evaluated counts as makeable until making it has failed; see :func:`refuse`.
     """
-    return _settle(build, read_table(build.folder / METRICS_FILE))
+    return _settle(build, refuse_early(build, read_table(build.folder / METRICS_FILE)))
 
 
 def refuse(build: Build, candidate: int, reason: str) -> None:
@@ -101,8 +103,8 @@ def describe_choice(build: Build, choice: Choice) -> dict[str, Any]:
 
 SELECT = Stage(
     "select",
-    ("selection", "path", "motors"),
-    ("wield", "select"),
+    ("selection", "path", "motors", "print"),
+    ("wield", "select", "make/parts", "make/gates"),
     (METRICS, PATHS, SELECTED),
     select,
 )
