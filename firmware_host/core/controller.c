@@ -33,18 +33,19 @@ static void exchange(struct controller *controller)
     const struct follower *follower = &controller->follower;
     struct motor_goals goals = {
         .torque_on = controller->torque_on, .current_ma = largest_current(controller)};
-    int32_t place[MAX_JOINTS], rate[MAX_JOINTS] = {0};
+    const int32_t *place = follower->command, *rate = follower->command_velocity;
+    int32_t searching[MAX_JOINTS] = {0}, stretch[MAX_JOINTS];
     if (controller->state == STATE_HOMING) {
-        memcpy(place, controller->homing.place, sizeof place);
-        rate[controller->homing.moved] = controller->homing.rate;
-    } else {
-        for (uint8_t i = 0; i < setup->joints; i++) {
-            place[i] = follower->command[i] + follower->preload[i];
-            rate[i] = follower->command_velocity[i];
-        }
+        searching[controller->homing.moved] = controller->homing.rate;
+        place = controller->homing.place;
+        rate = searching;
     }
-    motors_of(&setup->transmission, setup->joints, controller->offset, place, goals.position);
+    motors_of(&setup->transmission, setup->joints, controller->offset, place, controller->goal);
     motor_rates_of(&setup->transmission, setup->joints, rate, goals.velocity);
+    motor_rates_of(&setup->transmission, setup->joints, follower->preload, stretch);
+    for (uint8_t i = 0; i < setup->joints; i++) {
+        goals.position[i] = controller->goal[i] + stretch[i];
+    }
     controller->board->exchange(controller->board->context, &goals, &controller->readings);
     measure(controller);
 }
@@ -111,7 +112,9 @@ static void supervise(struct controller *controller)
         return;
     }
     const struct follower *follower = &controller->follower;
-    if (guard_tracking(follower, controller->measured) != CAUSE_NONE) {
+    const int32_t *turned = controller->readings.position;
+    if (guard_tracking(follower, controller->measured) != CAUSE_NONE ||
+        guard_standstill(&controller->guard, controller->setup->joints, turned, controller->goal) != CAUSE_NONE) {
         fault(controller, CAUSE_TRACKING);
     } else if (follower_arrived(follower)) {
         controller->state = STATE_READY;

@@ -20,6 +20,7 @@ struct controller {
     uint64_t time_us;
     uint64_t start_us;
     int32_t offset[MAX_JOINTS];   /* the motors' zeros in use */
+    int32_t goal[MAX_JOINTS];     /* of the motors, without preload */
     int32_t measured[MAX_JOINTS]; /* joints, from the motors' encoders */
     struct motor_readings readings;
     struct follower follower;

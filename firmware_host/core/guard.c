@@ -1,5 +1,7 @@
 #include "guard.h"
 
+#include "fixed.h"
+
 /* Whether a condition has lasted; counts how long. */
 static bool lasts(bool condition, uint8_t *ticks)
 {
@@ -27,6 +29,21 @@ uint8_t guard_motors(
         }
         if (lasts(!readings->answered[i], &guard->absent_ticks[i])) {
             cause = CAUSE_MOTOR_LOST;
+        }
+    }
+    return cause;
+}
+
+uint8_t guard_standstill(
+    struct guard *guard, uint8_t joints, const int32_t *reading, const int32_t *goal)
+{
+    uint8_t cause = CAUSE_NONE;
+    for (uint8_t i = 0; i < joints; i++) {
+        if (reading[i] != guard->still_reading[i]) {
+            guard->still_reading[i] = reading[i];
+            guard->still_goal[i] = goal[i];
+        } else if (magnitude(goal[i] - guard->still_goal[i]) > STANDSTILL) {
+            cause = CAUSE_TRACKING;
         }
     }
     return cause;

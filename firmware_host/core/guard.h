@@ -1,4 +1,4 @@
-/* Guards the motors: following, current, temperature, answering. */
+/* Guards the motors: following, turning at all, current, temperature, answering. */
 #ifndef GUARD_H
 #define GUARD_H
 
@@ -7,8 +7,13 @@
 
 /* Ticks in a row that a fault must last, so that one bad reading stops nothing. */
 #define GUARD_TICKS 2
+/* Way of a goal that must move its motor by an encoder's step at least: 1.4 degrees. */
+#define STANDSTILL 25000
 
 struct guard {
+    /* Each motor's reading when it last changed, and the path's goal for the motor at that time. */
+    int32_t still_reading[MAX_JOINTS];
+    int32_t still_goal[MAX_JOINTS];
     uint8_t current_ticks[MAX_JOINTS];
     uint8_t temperature_ticks[MAX_JOINTS];
     uint8_t absent_ticks[MAX_JOINTS];
@@ -17,6 +22,10 @@ struct guard {
 /* A cause of FAULT, or CAUSE_NONE. */
 uint8_t guard_motors(
     struct guard *guard, const struct hand_setup *setup, const struct motor_readings *readings);
+/* A reading that has not changed at all while its motor's goal, without preload, has gone on: an
+   encoder that stands still, or a motor that cannot turn. For every tick of a run. */
+uint8_t guard_standstill(
+    struct guard *guard, uint8_t joints, const int32_t *reading, const int32_t *goal);
 uint8_t guard_tracking(const struct follower *follower, const int32_t *measured);
 
 #endif

@@ -15,6 +15,7 @@
 #define STOP_STIFFNESS ((real)200)     /* [N m/rad] */
 #define STOP_DAMPING ((real)0.3)       /* [N m s/rad] */
 #define TORQUE_PER_AMPERE ((real)1.07) /* [N m/A]: a servo of 2.9 N m at 2.7 A */
+#define WEAK_TORQUE 22000              /* [1e-6 N m] */
 #define AMBIENT_C ((real)25)
 #define HEATING_C ((real)15)           /* in the long run, at 1 A */
 #define WARMING_S ((real)200)
@@ -86,6 +87,9 @@ static real servo_torque(const struct plant *plant, const struct motor_goals *go
     real allowed = (real)goals->current_ma * TORQUE_PER_AMPERE * (real)1000; /* [1e-6 N m] */
     if (goals->current_ma > 0 && allowed < (real)servo.torque_limit) {
         servo.torque_limit = (int32_t)allowed;
+    }
+    if (plant->weak[motor]) {
+        servo.torque_limit = WEAK_TORQUE;
     }
     real sign = mounting(plant, motor);
     int32_t rate = (int32_t)(sign * plant->motor_rate[motor] * (real)1e6);

@@ -34,6 +34,7 @@ struct plant {
     bool jammed[MAX_JOINTS]; /* motors that cannot turn */
     bool dead[MAX_JOINTS];   /* motors that neither pull nor answer */
     bool stuck[MAX_JOINTS];  /* encoders that stand still */
+    bool weak[MAX_JOINTS];   /* motors that hardly overcome their friction */
     int32_t last_read[MAX_JOINTS];
 };
 

@@ -34,6 +34,7 @@ class View(ctypes.Structure):
         ("cause", ctypes.c_uint8),
         ("torque_on", ctypes.c_uint8),
         ("command", ctypes.c_int32 * MAX_JOINTS),
+        ("command_velocity", ctypes.c_int32 * MAX_JOINTS),
         ("preload", ctypes.c_int32 * MAX_JOINTS),
         ("measured", ctypes.c_int32 * MAX_JOINTS),
         ("position", ctypes.c_double * MAX_JOINTS),

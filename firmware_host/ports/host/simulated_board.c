@@ -21,7 +21,7 @@ bool device_mishap(struct device *device, const char *kind, uint8_t number)
         bool *of_motor;
     } switches[] = {
         {"jam", plant->jammed}, {"death", plant->dead}, {"stuck", plant->stuck},
-        {"reversed", plant->reversed}};
+        {"weak", plant->weak}, {"reversed", plant->reversed}};
     for (size_t i = 0; i < sizeof switches / sizeof switches[0]; i++) {
         if (strcmp(kind, switches[i].name) == 0) {
             switches[i].of_motor[number] = true;

@@ -21,7 +21,7 @@ struct device {
 
 /* NULL, or a line of what is wrong with the set-up. */
 const char *device_make(struct device *device, char *setup);
-/* Let one motor or joint fail: jam, death, stuck, heat, reversed (motors); wedge, no_stop (joints).
+/* Let one motor or joint fail: jam, death, stuck, weak, heat, reversed (motors); wedge, no_stop (joints).
    False for a kind that is none of these. */
 bool device_mishap(struct device *device, const char *kind, uint8_t number);
 /* A reset of the controller; the hand stays where it is. */

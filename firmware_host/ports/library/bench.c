@@ -55,6 +55,9 @@ void bench_look(const struct device *device, struct view *view)
         .torque_on = controller->torque_on,
     };
     memcpy(view->command, controller->follower.command, sizeof view->command);
+    memcpy(
+        view->command_velocity, controller->follower.command_velocity,
+        sizeof view->command_velocity);
     memcpy(view->preload, controller->follower.preload, sizeof view->preload);
     memcpy(view->measured, controller->measured, sizeof view->measured);
     memcpy(view->current_ma, controller->readings.current_ma, sizeof view->current_ma);

@@ -16,6 +16,7 @@ struct view {
     uint8_t cause;
     uint8_t torque_on;
     int32_t command[MAX_JOINTS];
+    int32_t command_velocity[MAX_JOINTS];
     int32_t preload[MAX_JOINTS];
     int32_t measured[MAX_JOINTS];
     double position[MAX_JOINTS];
