@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 
-ORDER = ("spec", "model", "solve", "sample", "wield", "select", "make", "run")
+ORDER = ("spec", "model", "solve", "sample", "wield", "select", "make", "simulate", "run")
 COMMON = {"", "errors", "units"}  # "" is the package itself
 SUPPORT = {"store", "workers", "progress"}
 TOP = {"cli", "commands", "pipeline", "__main__"}

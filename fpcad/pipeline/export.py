@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from functools import partial
 
 import numpy as np
 
 from fpcad.errors import MakeError
 from fpcad.make.hand import make_hand
+from fpcad.make.preload.tighten import tightened
 from fpcad.make.trajectory import Trajectory, build_trajectory
 from fpcad.make.trajectory_file import write_trajectory
 from fpcad.model.geometry import hand_geometry
@@ -18,10 +20,11 @@ from fpcad.pipeline.select import METRICS, SELECTED, refuse
 from fpcad.pipeline.stage import Build, Counts, Stage
 from fpcad.sample.space import design_space
 from fpcad.spec.catalogue import motor
-from fpcad.store import read_json, read_table
+from fpcad.store import read_json, read_table, write_json
 from fpcad.wield.evaluate import contact_projector
 from fpcad.wield.path import WieldingPath
 
+GRIP = "grip.json"
 PART_STEPS = 8
 """About how many steps `make_hand` tells, for the bar."""
 
@@ -58,16 +61,21 @@ def _export_chosen(build: Build) -> int:
     named = np.array([selected["design"][name] for name in space.names])
     design = space.internal(named)
     geometry = hand_geometry(build.bench.template, design)
-    trajectories = {}
+    trajectories, margins = {}, {}
     with build.reporter.stage("trajectories", len(build.spec.poses)) as bar:
         for path in read_paths(build, int(selected["id"])).values():
-            trajectories[path.pose] = trajectory = make_trajectory(build, design, path)
+            trajectory, margins[path.pose] = tightened(
+                make_trajectory(build, design, path),
+                *(build.spec, path.pose, geometry, path.hand_in_tool),
+            )
+            trajectories[path.pose] = trajectory
             write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json")
             bar.advance(1, f"{path.pose}: {trajectory.duration_s:.1f} s")
+    write_json(build.folder / GRIP, {pose: asdict(told) for pose, told in margins.items()})
     with build.reporter.stage("parts", PART_STEPS) as bar:
         progress = partial(bar.advance, 1)
         files = make_hand(build.spec, geometry, build.folder, progress, trajectories)
-    return len(files) + len(build.spec.poses)
+    return len(files) + len(build.spec.poses) + 1
 
 
 def make_trajectory(build: Build, design: np.ndarray, path: WieldingPath) -> Trajectory:
@@ -81,8 +89,8 @@ def make_trajectory(build: Build, design: np.ndarray, path: WieldingPath) -> Tra
 
 EXPORT = Stage(
     "export",
-    ("name", "motors", "motion", "print"),
+    ("name", "motors", "motion", "grip", "print"),
     ("make",),
-    ("hand/transmission.yaml", "parts/bom.csv", "trajectories"),
+    ("hand/transmission.yaml", "parts/bom.csv", "trajectories", GRIP),
     export,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator
+from pydantic import AfterValidator, Field
 
 from fpcad.spec.base import Fraction, NonNegative, Positive, SpecModel, Vector3, rejection
 
@@ -18,11 +18,14 @@ def _some_direction(direction: Vector3) -> Vector3:
 class Grip(SpecModel):
     """The grip preload of the exported trajectories: forces asked for, and stiffnesses assumed."""
 
-    min_normal_force_n: Positive = 2.0
+    min_normal_force_n: Positive = 1.5
     """Least force [N] with which each contact presses on the tool."""
+    stiffness_share: Annotated[float, Field(ge=0, lt=1)] = 0.1
+    """Share of the grip's stiffness that its own forces must leave, for a tool that soft fingers
+    press hard snaps away; where less were left, forces fall below their least."""
     cone_share: Fraction = 0.5
     """Share of the friction cone that the planned forces use; the rest is for what is not planned."""
-    motor_share: Fraction = 1.0
+    motor_share: Fraction = 0.9
     """Share of the motors' continuous torque that gripping may take."""
     tool_mass_g: NonNegative = 50.0
     """Mass of the tool that the forces carry [g]."""
