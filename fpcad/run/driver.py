@@ -33,6 +33,9 @@ class Sample:
     knots_sent: int
     current_ma: Array | None = None  # (n,) of the motors, where they tell
     temperature_c: Array | None = None  # (n,) of the motors
+    preload_rad: Array | None = None  # (n,) by which the goals lie beyond the command
+    gaps: int = 0
+    """Gaps in what the controller heard so far."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,10 @@ class Driver(Protocol):
 
     def ready(self, *, clear: bool) -> Sample:
         """Where the joints are, once they may move; `clear` unlatches HOLD, FAULT or ESTOP."""
+        ...
+
+    def wait(self, until: Callable[[], bool], watch: Watch) -> None:
+        """Keep in touch while the joints stay where they are, until `until` is true."""
         ...
 
     def play(self, knots: Knots, watch: Watch) -> Played:

@@ -1,12 +1,8 @@
-"""What a run tells about itself: progress, tracking error, and a table of all samples."""
+"""What a run tells about itself: progress, and how well the joints followed."""
 
 from __future__ import annotations
 
-import csv
-import os
 from dataclasses import dataclass
-from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +25,8 @@ class Progress:
     state: str
     error_rad: float
     """Largest tracking error of the latest sample [rad]."""
+    sample: Sample
+    """The latest sample, for those who show joints."""
 
 
 @dataclass(frozen=True)
@@ -83,44 +81,3 @@ class TrackingError:
     def rms_rad(self) -> Array:
         """Root mean square error (n,) [rad]."""
         return np.sqrt(self._squares / max(self.samples, 1))
-
-
-class TelemetryLog:
-    """A CSV table with one row a sample; a run that fails leaves its table too."""
-
-    def __init__(self, path: Path | None, joint_names: tuple[str, ...]) -> None:
-        self._path = path
-        self._names = joint_names
-
-    def __enter__(self) -> TelemetryLog:
-        if self._path is not None:
-            self._partial = self._path.with_name(self._path.name + ".partial")
-            self._file = self._partial.open("w", newline="", encoding="utf-8")
-            self._rows = csv.writer(self._file)
-            self._rows.writerow(self._header())
-        return self
-
-    def add(self, sample: Sample) -> None:
-        """Write one row."""
-        if self._path is not None:
-            head = (sample.device_s, sample.path_s, sample.state, sample.cause)
-            counts = (sample.queued_knots, sample.bad_frames, sample.resends)
-            angles = np.concatenate([sample.position_rad, sample.command_rad]).tolist()
-            self._rows.writerow((*head, *counts, *angles))
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        if self._path is not None:
-            self._file.flush()
-            os.fsync(self._file.fileno())
-            self._file.close()
-            os.replace(self._partial, self._path)
-
-    def _header(self) -> list[str]:
-        head = ["device_s", "path_s", "state", "cause", "queued_knots", "bad_frames", "resends"]
-        positions = [f"{name}_position_rad" for name in self._names]
-        return [*head, *positions, *(f"{name}_command_rad" for name in self._names)]

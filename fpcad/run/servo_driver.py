@@ -83,6 +83,17 @@ class ServoDriver:
         self._bus.watchdog(WATCHDOG_S)
         return self._sample(self._bus.read_state(), None, "READY")
 
+    def wait(self, until: Callable[[], bool], watch: Watch) -> None:
+        """Hold still, watchdogs fed, while somebody puts the tool in."""
+        goal = self._bus.read_state().position_rad
+        cycle = _Cycle(self._clock, self._sleep)
+        while not until():
+            if watch.stops() > 0:
+                raise HeldByUser("stopped while the hand was open: it stays where it is, motors on")
+            cycle.wait()
+            self._bus.write_goals(goal)
+            watch.on_sample(self._sample(self._bus.read_state(), None, "READY"))
+
     def play(self, knots: Knots, watch: Watch) -> Played:
         wire = to_wire(knots)
         follower = self._loaded(wire)
@@ -191,6 +202,7 @@ class ServoDriver:
             sent,
             state.current_ma,
             state.temperature_c,
+            None if follower is None else follower.preload,
         )
 
 

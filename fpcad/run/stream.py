@@ -25,6 +25,7 @@ from fpcad.run.knots import WireKnots
 from fpcad.run.limits import from_counts
 from fpcad.run.link import Link
 from fpcad.run.messages import (
+    PRELOAD_URAD,
     Ack,
     Arm,
     Cause,
@@ -235,4 +236,6 @@ def to_sample(
         knots_sent,
         None if health is None else np.array(health.current_ma, dtype=float),
         None if health is None else np.array(health.temperature_c, dtype=float),
+        None if health is None else from_counts(health.preload_20urad) * PRELOAD_URAD,
+        0 if health is None else health.gaps,
     )

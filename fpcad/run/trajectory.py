@@ -20,6 +20,7 @@ from fpcad.run.quintic import Knots
 Array = NDArray[np.float64]
 
 _RATES = ("position_rad", "velocity_rad_s", "acceleration_rad_s2")
+_GOALS = "position_preload_rad"
 _UNITS = {
     Reason.POSITION_LIMIT: ("position", "rad"),
     Reason.VELOCITY_LIMIT: ("velocity", "rad/s"),
@@ -66,9 +67,9 @@ def in_order(trajectory: Trajectory, limits: JointLimits) -> Knots:
         )
     order = [trajectory.joint_names.index(name) for name in limits.names]
     k = trajectory.knots
-    return Knots(
-        k.time_s - k.time_s[0], k.position[:, order], k.velocity[:, order], k.acceleration[:, order]
-    )
+    preload = None if k.preload is None else k.preload[:, order]
+    columns = (column[:, order] for column in (k.position, k.velocity, k.acceleration))
+    return Knots(k.time_s - k.time_s[0], *columns, preload=preload)
 
 
 def slowed(knots: Knots, speed: float) -> Knots:
@@ -80,6 +81,7 @@ def slowed(knots: Knots, speed: float) -> Knots:
         knots.position,
         knots.velocity * speed,
         knots.acceleration * speed**2,
+        knots.preload,
     )
 
 
@@ -89,15 +91,18 @@ def repeated(knots: Knots, loops: int) -> Knots:
         raise TrajectoryError(f"loops {loops}: must be at least 1")
     if loops == 1:
         return knots
-    if np.abs(knots.position[-1] - knots.position[0]).max() > 1e-4:
+    ends = [knots.position] if knots.preload is None else [knots.position, knots.preload]
+    if max(np.abs(column[-1] - column[0]).max() for column in ends) > 1e-4:
         raise TrajectoryError("the trajectory does not end where it starts, so it cannot loop")
     times = [knots.time_s[1:] + loop * knots.time_s[-1] for loop in range(loops)]
+
+    def again(column: Array) -> Array:
+        return np.concatenate([column[:1], *[column[1:]] * loops])
+
     return Knots(
         np.concatenate([knots.time_s[:1], *times]),
-        *(
-            np.concatenate([column[:1], *[column[1:]] * loops])
-            for column in (knots.position, knots.velocity, knots.acceleration)
-        ),
+        *(again(column) for column in (knots.position, knots.velocity, knots.acceleration)),
+        preload=None if knots.preload is None else again(knots.preload),
     )
 
 
@@ -137,7 +142,17 @@ def _checked(data: Any) -> Trajectory:
         if np.abs(column[[0, -1]]).max() > _REST:
             raise ValueError(f"{key}: must be zero in the first and in the last row")
         column[[0, -1]] = 0.0
-    return Trajectory(tuple(names), Knots(time_s, *columns))
+    return Trajectory(tuple(names), Knots(time_s, *columns, preload=_preload(data, columns[0])))
+
+
+def _preload(data: dict[str, Any], position_rad: Array) -> Array | None:
+    """How far (N, n) the motors' goals lie beyond the positions, where the file has a grip."""
+    if data.get(_GOALS) is None:
+        return None
+    goals = _numbers(data, _GOALS)
+    if goals.shape != position_rad.shape:
+        raise ValueError(f"{_GOALS}: shape {goals.shape}, must be {position_rad.shape}")
+    return goals - position_rad
 
 
 def _numbers(data: dict[str, Any], key: str) -> Array:

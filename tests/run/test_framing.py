@@ -64,7 +64,7 @@ def test_frames_round_trip(frame):
 
 def test_a_frame_has_these_bytes():
     frame = Frame(kind=0x12, seq=0x0102, session=0xA0B0, payload=b"\x40\x42\x0f\0")
-    assert encode_frame(frame).hex() == "0a01120201b0a040420f05c9f4536f00"
+    assert encode_frame(frame).hex() == "0a02120201b0a040420f05ca4f648400"
 
 
 def test_payloads_have_a_largest_size():

@@ -67,7 +67,7 @@ def played(driver, knots, on_sample=lambda _: None, stops=lambda: 0):
 def test_simulated_motors_follow_a_trajectory():
     bus, driver = simulated(Time())
     assert np.abs(driver.ready(clear=False).position_rad - swing().position[0]).max() < 1e-9
-    report = follow(driver, swing(), NAMES)
+    report = follow(driver, [swing()], NAMES)
     assert report.final_state == "READY" and report.max_error_all_rad < 0.05
     assert np.abs(bus.hand.joint_rad - swing().position[-1]).max() < 0.01
 
@@ -167,7 +167,7 @@ def driver(maker, bench):
 
 def test_servos_follow_a_trajectory(driver, bench):
     driver.ready(clear=False)
-    report = follow(driver, swing(1.0, amplitude=0.03), NAMES)
+    report = follow(driver, [swing(1.0, amplitude=0.03)], NAMES)
     assert report.max_error_all_rad < 0.1
     assert np.abs(bench.hand.joint_rad - swing().position[-1]).max() < 0.02
     assert report.bad_frames == 0
@@ -188,7 +188,7 @@ def test_flipped_bits_cost_single_answers_and_nothing_else(driver, bench):
     driver.ready(clear=False)
     bench.faults.to_host = bit_flips(1e-4, seed=3)
     bench.faults.to_servos = bit_flips(1e-4, seed=4)
-    report = follow(driver, swing(1.0, amplitude=0.03), NAMES)
+    report = follow(driver, [swing(1.0, amplitude=0.03)], NAMES)
     assert report.final_state == "READY" and report.bad_frames > 0
     assert np.abs(bench.hand.joint_rad - swing().position[-1]).max() < 0.02
 
