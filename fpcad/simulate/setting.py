@@ -19,7 +19,7 @@ class Trial:
     limited: bool = True
     """Whether motors stop at their continuous torque."""
     preload: float = 1.0
-    """Factor on the grip preload: fingers that press too hard or too softly."""
+    """Factor on the grip preload: fingers that push too hard or too softly."""
     friction: float | None = None
     """Coefficient of friction; the spec's where None."""
     gravity: tuple[float, float, float] = (0.0, 0.0, -1.0)

@@ -22,7 +22,7 @@ class Grip(SpecModel):
     """Least force [N] with which each contact presses on the tool."""
     stiffness_share: Annotated[float, Field(ge=0, lt=1)] = 0.1
     """Share of the grip's stiffness that its own forces must leave, for a tool that soft fingers
-    press hard snaps away; where less were left, forces fall below their least."""
+    squeeze hard snaps away; where less were left, forces fall below their least."""
     cone_share: Fraction = 0.5
     """Share of the friction cone that the planned forces use; the rest is for what is not planned."""
     motor_share: Fraction = 0.9

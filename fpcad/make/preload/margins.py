@@ -51,7 +51,7 @@ def cone_share(forces: Array, friction: float) -> Array:
 
 
 def with_errors(touch: Touch, stiffness: HandStiffness, forces: Array) -> Array:
-    """(2^n, N, 3n) what becomes of forces (N, 3n) [N] when fingers press too hard or too softly.
+    """(2^n, N, 3n) what becomes of forces (N, 3n) [N] when fingers push too hard or too softly.
 
     The tool moves until it is in balance again, and the contacts' stiffness shares that out.
     """

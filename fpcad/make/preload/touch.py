@@ -66,12 +66,12 @@ def touch(grip: Grip, joints: Array, angles: Array) -> Touch:
     for contact in grip.contacts:
         start, end = link_axis(grip.geometry, contact, joints)
         on_link, on_tool = nearest_points(start, end, back, tip)
-        press = on_tool - on_link
-        press /= np.linalg.norm(press, axis=1)[:, None]
-        lengthwise = along - np.einsum("ij,ij->i", along, press)[:, None] * press
+        push = on_tool - on_link
+        push /= np.linalg.norm(push, axis=1)[:, None]
+        lengthwise = along - np.einsum("ij,ij->i", along, push)[:, None] * push
         lengthwise /= np.linalg.norm(lengthwise, axis=1)[:, None]
-        points.append(on_tool - grip.tool.radius_mm * press)
-        axes.append(np.stack([press, lengthwise, np.cross(press, lengthwise)], axis=2))
+        points.append(on_tool - grip.tool.radius_mm * push)
+        axes.append(np.stack([push, lengthwise, np.cross(push, lengthwise)], axis=2))
         first = 3 * grip.geometry.fingers.index(contact.finger)
         moving = turning[contact.finger][: 3 if contact.link == "distal" else 2]
         jacobians.append(_jacobian(moving, first, points[-1], joints.shape[1]))
