@@ -18,12 +18,19 @@ static inline int32_t to_counts(int64_t fine)
     return (int32_t)((fine + ((int64_t)1 << (FRACTION_BITS - 1))) >> FRACTION_BITS);
 }
 
-/* value * share / 2^31 for 0 <= share <= 2^31. */
-static inline int64_t times_q31(int64_t value, uint32_t share)
+/* 32 by 32 bits: small processors take a tenth of the time that 64 by 64 bits take them. */
+static inline int64_t times_word(int32_t value, uint32_t factor)
 {
-    int64_t high = value >> 32;
-    uint64_t low = (uint32_t)value;
-    return (high * (int64_t)share) * 2 + (int64_t)(low * share >> 31);
+    uint64_t product = (uint64_t)(uint32_t)value * factor;
+    return (int64_t)(value < 0 ? product - ((uint64_t)factor << 32) : product);
+}
+
+/* value * share / 2^32. Whole bytes of shift cost small processors nothing. */
+static inline int64_t times_share(int64_t value, uint32_t share)
+{
+    int64_t high = times_word((int32_t)(value >> 32), share);
+    uint64_t low = (uint64_t)(uint32_t)value * share;
+    return high + (int64_t)(low >> 32);
 }
 
 static inline int32_t magnitude(int32_t value)

@@ -232,7 +232,7 @@ static struct motion beyond(const struct follower *follower, uint8_t joint, int6
 }
 
 /* Motion of all joints by path time, at the present place. */
-static void sample(struct follower *follower, struct motion *motion)
+static void sample(struct follower *follower, struct motion *motion, enum detail detail)
 {
     enter_segment(follower);
     int64_t elapsed = (follower->path >> 16) - (int64_t)knot_at(follower, 0)->t_us;
@@ -240,7 +240,7 @@ static void sample(struct follower *follower, struct motion *motion)
     uint32_t share = late > 0 ? 0 : quintic_share((int32_t)elapsed, follower->span.us);
     for (uint8_t i = 0; i < follower->setup->joints; i++) {
         motion[i] = late > 0 ? beyond(follower, i, late)
-                             : quintic_at(&follower->segment[i], share, &follower->span);
+                             : quintic_at(&follower->segment[i], share, &follower->span, detail);
     }
 }
 
@@ -268,7 +268,7 @@ static int32_t braking(struct follower *follower)
     int64_t strongest = (int64_t)FASTEST_BRAKING << BRAKING_BITS;
     int32_t rate = follower->rate;
     struct motion motions[MAX_JOINTS];
-    sample(follower, motions);
+    sample(follower, motions, WITH_ACCELERATION);
     for (uint8_t i = 0; i < follower->setup->joints; i++) {
         struct motion motion = motions[i];
         if (motion.velocity == 0) {
@@ -296,7 +296,7 @@ void follower_step(struct follower *follower, int32_t dt_us)
     follower->path += (((int64_t)follower->rate + rate) / 2 * dt_us) >> 14;
     follower->rate = rate;
     struct motion motions[MAX_JOINTS];
-    sample(follower, motions);
+    sample(follower, motions, WITHOUT_ACCELERATION);
     for (uint8_t i = 0; i < follower->setup->joints; i++) {
         follower->command[i] = motions[i].position;
         follower->command_velocity[i] = times_rate(motions[i].velocity, rate);

@@ -31,7 +31,10 @@ void quintic_of(const struct hermite *ends, struct quintic *out)
 
 uint32_t quintic_share(int32_t elapsed_us, int32_t duration_us)
 {
-    return (uint32_t)(((uint64_t)elapsed_us << 31) / (uint32_t)duration_us);
+    if (elapsed_us >= duration_us) {
+        return UINT32_MAX;
+    }
+    return (uint32_t)(((uint64_t)elapsed_us << 32) / (uint32_t)duration_us);
 }
 
 /* Horner's scheme for the `order`-th derivative by s. */
@@ -40,18 +43,21 @@ static int64_t derivative(const struct quintic *quintic, uint8_t order, uint32_t
     static const uint8_t FACTOR[3][6] = {{1, 1, 1, 1, 1, 1}, {0, 1, 2, 3, 4, 5}, {0, 0, 2, 6, 12, 20}};
     int64_t sum = 0;
     for (uint8_t k = 5; k > order; k--) {
-        sum = times_q31(sum + FACTOR[order][k] * quintic->power[k], share);
+        sum = times_share(sum + FACTOR[order][k] * quintic->power[k], share);
     }
     return sum + FACTOR[order][order] * quintic->power[order];
 }
 
-struct motion quintic_at(const struct quintic *quintic, uint32_t share, const struct span *span)
+struct motion quintic_at(
+    const struct quintic *quintic, uint32_t share, const struct span *span, enum detail detail)
 {
-    int64_t velocity = span_per(span, derivative(quintic, 1, share));
-    int64_t acceleration = span_per(span, derivative(quintic, 2, share));
-    return (struct motion){
+    struct motion motion = {
         .position = to_counts(derivative(quintic, 0, share)),
-        .velocity = to_counts(velocity),
-        .acceleration = to_counts(span_per(span, acceleration)),
+        .velocity = to_counts(span_per(span, derivative(quintic, 1, share))),
     };
+    if (detail == WITH_ACCELERATION) {
+        int64_t acceleration = span_per(span, derivative(quintic, 2, share));
+        motion.acceleration = to_counts(span_per(span, acceleration));
+    }
+    return motion;
 }

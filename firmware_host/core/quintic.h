@@ -34,8 +34,11 @@ void hermite_of(
     struct hermite *out);
 void quintic_of(const struct hermite *ends, struct quintic *out);
 
-/* How far `elapsed_us` is into a segment, in 2^-31. */
+/* How far `elapsed_us` is into a segment, in 2^-32; its very end counts as one step less. */
 uint32_t quintic_share(int32_t elapsed_us, int32_t duration_us);
-struct motion quintic_at(const struct quintic *quintic, uint32_t share, const struct span *span);
+/* Position and velocity alone take less time. */
+enum detail { WITHOUT_ACCELERATION, WITH_ACCELERATION };
+struct motion quintic_at(
+    const struct quintic *quintic, uint32_t share, const struct span *span, enum detail detail);
 
 #endif

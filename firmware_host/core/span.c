@@ -22,7 +22,7 @@ struct span span_of(int32_t us)
 /* value * factor / 2^32, rounded down. */
 static int64_t scaled(int64_t value, uint32_t factor)
 {
-    int64_t high = (value >> 32) * (int64_t)factor;
+    int64_t high = times_word((int32_t)(value >> 32), factor);
     return high + (int64_t)((uint64_t)(uint32_t)value * factor >> 32);
 }
 

@@ -42,7 +42,7 @@ static struct motion next_segment(void)
     hermite_of(&from, &to, 0, &span, &ends);
     quintic_of(&ends, &quintic);
     uint32_t share = quintic_share(below(draws[7], (uint32_t)duration + 1), duration);
-    return quintic_at(&quintic, share, &span);
+    return quintic_at(&quintic, share, &span, WITH_ACCELERATION);
 }
 
 static uint32_t take_number(void)

@@ -104,7 +104,7 @@ void bench_quintic(const int64_t *rows, int32_t *results, uint32_t count)
         hermite_of(&from, &to, 0, &span, &ends);
         quintic_of(&ends, &quintic);
         uint32_t share = quintic_share((int32_t)rows[8], duration_us);
-        struct motion motion = quintic_at(&quintic, share, &span);
+        struct motion motion = quintic_at(&quintic, share, &span, WITH_ACCELERATION);
         results[0] = motion.position;
         results[1] = motion.velocity;
         results[2] = motion.acceleration;
