@@ -12,7 +12,7 @@ from fpcad.check_description.shapes import hull_of, outside_hull
 from fpcad.check_description.urdf import Inertial, Link, Urdf
 
 ROUNDING = 1e-6
-"""Share of the largest moment [-] by which the triangle inequality may fail: rounded numbers."""
+"""Share of the largest moment [-] by which an inequality may fail, since numbers are rounded."""
 DENSITY_KG_M3 = (10.0, 12_000.0)
 """Mass over the volume of the hull: from hollow plastic to lead."""
 SPREAD = (0.1, 10.0)
@@ -22,28 +22,30 @@ SLACK_M, SLACK_SHARE = 1e-4, 0.02
 
 
 def inertia(_: Package, robot: Urdf) -> Iterator[Fault]:
-    """Moving links without mass, and tensors that no body can have."""
+    """Moving links without mass, and tensors that no body can have.
+
+    A link that is fixed to another may be a point or a mere frame.
+    """
     moved = {joint.child for joint in robot.moving()}
     for link in robot.links:
-        body = link.inertial
+        subject, body, moves = f"link {link.name}", link.inertial, link.name in moved
         if body is None:
-            if link.name in moved:
-                yield Fault(f"link {link.name}", "moves and has no inertial")
-        elif body.mass <= 0:
-            yield Fault(f"link {link.name}", f"weighs {body.mass:g} kg")
+            if moves:
+                yield Fault(subject, "moves and has no inertial")
+        elif body.mass < 0 or (moves and body.mass == 0):
+            yield Fault(subject, f"weighs {body.mass:g} kg")
         else:
-            yield from _impossible(link.name, body)
+            yield from (Fault(subject, message) for message in _impossible(body, moves))
 
 
-def _impossible(link: str, body: Inertial) -> Iterator[Fault]:
+def _impossible(body: Inertial, moves: bool) -> Iterator[str]:
     smallest, middle, largest = np.linalg.eigvalsh(body.tensor)
-    if smallest <= 0:
-        yield Fault(f"link {link}", f"its inertia is not positive definite: {smallest:.3g} kg m^2")
+    if smallest < -ROUNDING * largest or (moves and smallest <= 0):
+        yield f"its inertia is not positive definite: {smallest:.3g} kg m^2"
     elif largest > (smallest + middle) + ROUNDING * largest:
-        yield Fault(
-            f"link {link}",
+        yield (
             f"its largest moment {largest:.4g} exceeds the sum of the others, "
-            f"{smallest + middle:.4g} kg m^2",
+            f"{smallest + middle:.4g} kg m^2"
         )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -11,7 +10,8 @@ from fpcad.check_description.check import Fault
 from fpcad.check_description.package import Package
 from fpcad.check_description.urdf import Joint, Limit, Urdf
 
-LARGEST_RANGE_RAD = 4 * math.pi
+LARGEST_RANGE_RAD = 13.0
+"""Two turns, however they were rounded."""
 LARGEST_SPEED = 100.0
 """rad/s or m/s."""
 GRAVITY_M_S2 = 9.81

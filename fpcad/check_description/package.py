@@ -61,13 +61,13 @@ class Package:
 
 
 def _is_package(folder: Path, name: str) -> bool:
-    manifest = folder / "package.xml"
-    if not manifest.is_file():
-        return folder.name == name and folder.is_dir()
+    """Whether a folder is a ROS package, by its own name or by what its manifest says."""
+    if folder.name == name and folder.is_dir():
+        return True
     try:
-        return ET.parse(manifest).getroot().findtext("name") == name
-    except ET.ParseError:
-        return folder.name == name
+        return ET.parse(folder / "package.xml").getroot().findtext("name") == name
+    except (OSError, ET.ParseError):
+        return False
 
 
 def _is_whole_mjcf(file: Path) -> bool:

@@ -66,8 +66,9 @@ def _differing(link: Link) -> Iterator[Fault]:
         )
     else:
         (low, high), (other_low, other_high) = _bounds(link.visuals), _bounds(link.collisions)
-        if np.any(low > other_high) or np.any(other_low > high):
-            yield Fault(f"link {link.name}", "its visual and its collision lie apart")
+        gap = float(np.maximum(low - other_high, other_low - high).max())
+        if gap > _size(link.visuals):
+            yield Fault(f"link {link.name}", f"its visual and its collision are {gap:.3g} m apart")
 
 
 def _is_covered(link: Link, robot: Urdf, by_name: dict[str, Link]) -> bool:

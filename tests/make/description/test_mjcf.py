@@ -11,9 +11,9 @@ from ruamel.yaml import YAML
 from fpcad.make.servo import servo_of
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.spec.catalogue import motor
-from tests.make.description.conftest import JOINTS, TRAJECTORIES
 from tests.make.description.engine import mujoco
 from tests.make.hands import CENTRE, CLAY
+from tests.make.simple_hand import JOINTS, TRAJECTORIES
 
 SECOND = 500
 """Steps of 2 ms."""

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.make.description.conftest import JOINTS, NAMES
 from tests.make.description.readers import Mujoco, Pinocchio, Yourdfpy
 from tests.make.hands import CENTRE, CLAY, CORNERS
+from tests.make.simple_hand import JOINTS, NAMES
 
 POSTURES = 100
 HANDS = pytest.mark.parametrize("values", [CENTRE, *CORNERS], ids=str)

@@ -14,8 +14,8 @@ import xacro
 import yourdfpy
 from ruamel.yaml import YAML
 
-from tests.make.description.conftest import JOINTS, TRAJECTORIES, nod
 from tests.make.hands import CENTRE, CLAY
+from tests.make.simple_hand import JOINTS, TRAJECTORIES, nod
 
 
 @pytest.fixture
