@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -15,6 +16,7 @@ from fpcad.look.hands import HandDimensions, hand_dimensions
 from fpcad.look.holding import HoldingForces
 from fpcad.look.kept import MAX_EXACT, exact_paths, thin_paths
 from fpcad.look.layout import layout_of
+from fpcad.look.logs import RunLog
 from fpcad.look.meshes import chosen_meshes
 from fpcad.look.pack import Packer
 from fpcad.look.poses import pose_states
@@ -34,10 +36,14 @@ OPENING, HANDS, PATHS = "opening", "hands", "paths"
 """Blocks in the order of the page: figures and the chosen hand; every hand in 3D; other paths."""
 
 
-def build_document(run: Run) -> tuple[Told, dict[str, str]]:
+def build_document(run: Run, logs: Sequence[RunLog] = ()) -> tuple[Told, dict[str, str]]:
     """What the page shows, and the blocks of numbers that it refers to.
 
     The page draws from the first block while the browser still reads the others.
+
+    Args:
+        run: the run.
+        logs: runs of its hand on motors.
 
     Returns:
         JSON values with references into the blocks, and each block in base64, the first one first;
@@ -73,6 +79,7 @@ def build_document(run: Run) -> tuple[Told, dict[str, str]]:
         "exact": exact_paths(run, paths, shown[len(first) : MAX_EXACT]),
         "thin": thin_paths(run, paths, shown[:MAX_EXACT], merit),
         "meshes": _meshes(run, paths),
+        "runs": [_log(log, paths) for log in logs],
     }
     return document, {block.name: block.text() for block in (pack, hands, paths)}
 
@@ -235,3 +242,8 @@ def _meshes(run: Run, pack: Packer) -> list[Told]:
         }
         for mesh in chosen_meshes(urdf)
     ]
+
+
+def _log(log: RunLog, pack: Packer) -> Told:
+    quantities = [{**asdict(q), "values": pack.exact(q.values)} for q in log.quantities]
+    return {"name": log.name, "seconds": pack.exact(log.seconds), "quantities": quantities}

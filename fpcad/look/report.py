@@ -12,6 +12,7 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 
 from fpcad.look.document import OPENING, build_document
+from fpcad.look.logs import run_logs
 from fpcad.look.run import Run, load
 from fpcad.look.words import summarize
 from fpcad.store import write_whole
@@ -37,12 +38,14 @@ def report_page(run: Run, token: str = "") -> str:
         token: what the live view's page shows to its server; with one, the page asks that server
             for paths.
     """
-    document, blocks = build_document(run)
+    warnings: list[str] = []
+    logs = run_logs(run.folder, warnings)
+    document, blocks = build_document(run, logs)
     document["token"] = token
     page = files("fpcad.look") / "page"
     template = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     return template.from_string((page / "report.html").read_text(encoding="utf-8")).render(
-        summary=summarize(run, document),
+        summary=summarize(run, document, logs, warnings),
         document=document,
         version=version("fpcad"),
         style=(page / "report.css").read_text(encoding="utf-8"),

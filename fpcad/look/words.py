@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import csv
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from fpcad.look.built import Row, check_warnings, checks, parts_list, refusals, torque_warnings
 from fpcad.look.columns import Column
 from fpcad.look.curves import outcome_counts
+from fpcad.look.logs import RunLog
 from fpcad.look.run import Run
-from fpcad.select.columns import numbers
+from fpcad.select.columns import flags, numbers
 from fpcad.spec.pose import Pose
 
 NO_VALUE = "no path"
@@ -43,14 +45,22 @@ class Summary:
     run: list[tuple[str, str]]
     """Facts of the run: subject and sentence."""
     chosen: Chosen | None
-    parts: list[dict[str, str]]
+    refusals: list[tuple[str, int, list[int]]]
+    """Why hands cannot be made, how many, and the first of them."""
+    parts: list[Row]
     """Rows of the parts list."""
-    warnings: list[str] = field(default_factory=list)
+    checks: list[Row]
+    """What the gates found on the chosen hand."""
+    logs: list[tuple[str, tuple[tuple[str, str], ...]]]
+    """Runs on motors with their facts."""
+    warnings: list[str]
 
 
-def summarize(run: Run, document: dict[str, Any]) -> Summary:
-    """The summary of a run and of what its page leaves out."""
-    warnings = [*run.warnings]
+def summarize(
+    run: Run, document: dict[str, Any], logs: Sequence[RunLog] = (), more: Sequence[str] = ()
+) -> Summary:
+    """The summary of a run and of what its page leaves out; `more` are warnings to add."""
+    warnings = [*run.warnings, *check_warnings(run), *torque_warnings(run), *more]
     if left_out := document["thin"]["left_out"]:
         warnings.append(f"{left_out} hands of the front are on this page without their paths.")
     return Summary(
@@ -59,7 +69,10 @@ def summarize(run: Run, document: dict[str, Any]) -> Summary:
         spec=spec_facts(run),
         run=run_facts(run),
         chosen=_chosen(run),
-        parts=_parts(run),
+        refusals=refusals(run),
+        parts=parts_list(run),
+        checks=checks(run),
+        logs=[(log.name, log.facts) for log in logs],
         warnings=warnings,
     )
 
@@ -106,6 +119,7 @@ def run_facts(run: Run) -> list[tuple[str, str]]:
     ]
     if run.metrics.num_rows:
         facts.append(("Wielding", _wielding(run)))
+        facts.append(("Makeable", _makeable(run)))
     return facts
 
 
@@ -115,6 +129,12 @@ def _wielding(run: Run) -> str:
     shares = [f"{pose} {m.mean():.1%}" for pose, m in zip(run.poses, moves, strict=True)]
     every = np.all(moves, axis=0)
     return f"tool turned from all poses by {every.mean():.1%} of the hands ({', '.join(shares)})"
+
+
+def _makeable(run: Run) -> str:
+    """How many hands nothing is known against."""
+    refused = run.metrics.num_rows - int(flags(run.metrics, "makeable").sum())
+    return f"{refused} hands are refused" if refused else "no hand is refused"
 
 
 def _range(run: Run, column: Column) -> str:
@@ -172,12 +192,3 @@ def _value(value: float | None, column: Column, with_unit: bool = False) -> str:
         return NO_VALUE
     text = f"{value:.{UNITS_OF_DIGITS.get(column.unit, 1)}f}"
     return f"{text} {column.unit}" if with_unit else text
-
-
-def _parts(run: Run) -> list[dict[str, str]]:
-    file = run.folder / "parts" / "bom.csv"
-    exported = run.manifest["stages"].get("export", {}).get("status") == "done"
-    if not exported or not file.exists():
-        return []
-    with file.open(encoding="utf-8", newline="") as stream:
-        return list(csv.DictReader(stream))

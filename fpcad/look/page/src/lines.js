@@ -13,14 +13,15 @@ const HEIGHT = 250;
 
 export class Lines {
   /**
-   * @param view {title, x, curves: [{name, y}], xLabel, yLabel, marks(row): [{x, curve}], find(x, curve): row}
+   * @param view {title, x, curves: [{name, y}], xLabel, yLabel, yRange?, marks(row): [{x, curve}], find(x, curve): row};
+   *   without a range y is a share, from 0 to 1; without marks and find there are no hands to mark.
    */
   constructor(host, state, view) {
     Object.assign(this, { state, view, width: 0 });
     this.box = make("div", { class: "plot lines" });
     host.append(this.box, this.#legend());
     this.svg = select(this.box).append("svg").attr("role", "img").attr("aria-label", view.title);
-    this.svg.on("click", (event) => this.#click(event));
+    if (view.find) this.svg.on("click", (event) => this.#click(event));
     onResize(this.box, (width) => this.#draw(width));
     state.on("select", () => this.#mark());
   }
@@ -41,14 +42,15 @@ export class Lines {
     const { view, svg } = this;
     svg.attr("viewBox", [0, 0, width, HEIGHT]).selectAll("*").remove();
     this.x = scaleLinear([Math.min(0, view.x[0] ?? 0), max(view.x) || 1], [MARGIN.left, width - MARGIN.right]);
-    this.y = scaleLinear([0, 1], [HEIGHT - MARGIN.bottom, MARGIN.top]);
+    this.y = scaleLinear(view.yRange ?? [0, 1], [HEIGHT - MARGIN.bottom, MARGIN.top]);
+    const upright = view.yRange ? axisLeft(this.y).ticks(5) : axisLeft(this.y).ticks(5, "%");
     svg.append("g").attr("transform", `translate(0,${HEIGHT - MARGIN.bottom})`).call(axisBottom(this.x).ticks(width / 90));
-    svg.append("g").attr("transform", `translate(${MARGIN.left},0)`).call(axisLeft(this.y).ticks(5, "%"));
+    svg.append("g").attr("transform", `translate(${MARGIN.left},0)`).call(upright);
     const label = (text) => svg.append("text").attr("class", "axis-label").attr("text-anchor", "end").text(text);
     label(view.xLabel).attr("x", width - MARGIN.right).attr("y", HEIGHT - 6);
     label(view.yLabel).attr("text-anchor", "start").attr("x", 8).attr("y", 16);
     view.curves.forEach(({ y }, i) => {
-      const path = line().x((_, k) => this.x(view.x[k])).y((v) => this.y(v));
+      const path = line().defined((v) => !Number.isNaN(v)).x((_, k) => this.x(view.x[k])).y((v) => this.y(v));
       svg.append("path").attr("class", `curve curve-${i % 5}`).attr("stroke-dasharray", DASHES[i % 5]).attr("d", path(y));
     });
     this.marks = svg.append("g");

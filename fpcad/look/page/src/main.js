@@ -6,6 +6,7 @@ import { Compare } from "./compare.js";
 import { drawUnseen, make, shown } from "./dom.js";
 import { Lines } from "./lines.js";
 import { List } from "./list.js";
+import { drawLogs } from "./logs.js";
 import { Numbers } from "./numbers.js";
 import { Parallel } from "./parallel.js";
 import { Player } from "./player.js";
@@ -38,6 +39,7 @@ async function start() {
     player?.redraw();
   });
   await whole;
+  if (run.runs.length) drawLogs(at("log-controls"), [...document.querySelectorAll(".log")], run.runs);
   if (player) {
     player.reload();
     new List(at("list"), at("list-controls"), state);

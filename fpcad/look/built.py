@@ -1,0 +1,87 @@
+"""What a build folder tells of the hand that was made: parts list, checks, refusals, torques."""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from pathlib import Path
+
+from fpcad.look.run import Run
+from fpcad.select.columns import flags
+
+Row = dict[str, str]
+
+BOM, CHECKS = Path("parts") / "bom.csv", Path("parts") / "checks.csv"
+SEVERITIES = ("error", "warning", "figure")
+SHOWN_REFUSALS = 10
+
+
+def parts_list(run: Run) -> list[Row]:
+    """Rows of parts/bom.csv; none before the export is done."""
+    return _rows(run, BOM)
+
+
+def checks(run: Run) -> list[Row]:
+    """Findings of parts/checks.csv, the gravest first; none before the export is done."""
+    rank = {severity: k for k, severity in enumerate(SEVERITIES)}
+    return sorted(_rows(run, CHECKS), key=lambda row: rank.get(row.get("severity", ""), len(rank)))
+
+
+def check_warnings(run: Run) -> list[str]:
+    """What the gates warn of, a sentence each."""
+    return [
+        f"{row.get('part', '')}: {row.get('text', '')}."
+        for row in checks(run)
+        if row.get("severity") in SEVERITIES[:2]
+    ]
+
+
+def torque_warnings(run: Run) -> list[str]:
+    """Whether the chosen hand's motors hold the tip force that the spec asks for."""
+    chosen = run.selected or {}
+    weak = [
+        f"{pose['held_tip_force_n']:.1f} N of {pose['tip_force_n']:g} N in {name}"
+        for name, pose in chosen.get("torque", {}).items()
+        if pose["held_tip_force_n"] < pose["tip_force_n"]
+    ]
+    return (
+        [f"{chosen['motor']} motors hold less at the tip than asked: {', '.join(weak)}."]
+        if weak
+        else []
+    )
+
+
+def refusals(run: Run) -> list[tuple[str, int, list[int]]]:
+    """Reasons why hands cannot be made, each with how many and the first of them.
+
+    The most frequent first; at most ten, and the rest as one.
+    """
+    table = run.metrics
+    if not table.num_rows:
+        return []
+    refused = [
+        (reason or "no reason was told", int(candidate))
+        for makeable, reason, candidate in zip(
+            flags(table, "makeable"),
+            table["reason"].to_pylist(),
+            table["id"].to_pylist(),
+            strict=True,
+        )
+        if not makeable
+    ]
+    counts = Counter(reason for reason, _ in refused).most_common()
+    shown = [
+        (reason, count, [i for told, i in refused if told == reason][:5])
+        for reason, count in counts[:SHOWN_REFUSALS]
+    ]
+    rest = sum(count for _, count in counts[SHOWN_REFUSALS:])
+    return [*shown, (f"{len(counts) - SHOWN_REFUSALS} more reasons", rest, [])] if rest else shown
+
+
+def _rows(run: Run, name: Path) -> list[Row]:
+    file = run.folder / name
+    exported = run.manifest["stages"].get("export", {}).get("status") == "done"
+    if not exported or not file.exists():
+        return []
+    with file.open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
