@@ -16,6 +16,7 @@ from fpcad.run.drivers.dynamixel import DynamixelBus
 from fpcad.run.drivers.feetech import FeetechBus
 from fpcad.run.drivers.fw import ControllerBus
 from fpcad.run.drivers.sim import SimBus
+from fpcad.run.limits import JointLimits
 from fpcad.run.motor_map import MotorMap, Mounting
 from fpcad.run.port import open_port
 from fpcad.run.run_trajectory import SIMULATED_PORTS
@@ -51,8 +52,10 @@ def motor_map(mounted: Mounting | None = None) -> MotorMap:
     return MotorMap(NAMES, MOTORS, GEARS, mounted or mounting())
 
 
-def tendon_hand(joint_rad: np.ndarray = START, **physics: float) -> TendonHand:
-    return TendonHand(GEARS, hand_limits(), joint_rad, TendonPhysics(**physics))
+def tendon_hand(
+    joint_rad: np.ndarray = START, limits: JointLimits | None = None, **physics: float
+) -> TendonHand:
+    return TendonHand(GEARS, limits or hand_limits(), joint_rad, TendonPhysics(**physics))
 
 
 @contextmanager
