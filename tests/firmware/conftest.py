@@ -1,3 +1,4 @@
+from tests.firmware.real_time import pytest_configure, pytest_pyfunc_call
 from tests.run.conftest import each_controller
 
-__all__ = ["each_controller"]
+__all__ = ["each_controller", "pytest_configure", "pytest_pyfunc_call"]

@@ -73,6 +73,7 @@ def bench(port):
         yield WireBench(line)
 
 
+@pytest.mark.real_time
 def test_all_reachable_pairs_have_their_answer(bench):
     for state, command in product(REACHABLE, COMMANDS):
         bench.into(state, RESTING)
@@ -120,6 +121,7 @@ def test_strangers_may_only_stop(bench):
     bench.into(State.READY, ())
 
 
+@pytest.mark.real_time
 def test_bytes_of_noise_do_nothing(bench):
     bench.into(State.READY, ())
     noise = np.random.default_rng(3).integers(0, 256, 3000, np.uint8).tobytes()
@@ -131,21 +133,22 @@ def test_bytes_of_noise_do_nothing(bench):
     assert bench.ask(AskLimits()) == hand_limits().on_wire()
 
 
-def test_a_trajectory_is_followed(bench, port, tmp_path, request):
-    # An AVR takes some 30 ms for a knot, so it gets a motion that its buffer holds at once.
+@pytest.mark.real_time
+def test_a_trajectory_is_followed(port, tmp_path, request):
+    # An AVR takes 37 ms for a knot, so it gets a motion that its buffer holds at once.
     motion = swing(3.0, 41) if "[avr]" in request.node.name else swing()
-    bench.into(State.READY, ())
-    bench._line.close()
+    with closing(open_port(port)) as line:
+        WireBench(line).into(State.READY, ())
     report = run_trajectory(write_trajectory(tmp_path, motion), hand_limits(), port)
     assert report.final_state == "READY" and report.max_error_all_rad < 0.005
 
 
-def test_a_trajectory_is_followed_over_a_bad_line(bench, port, tmp_path, request):
-    if "[avr]" in request.node.name:
-        pytest.skip("on a busy machine simavr falls behind its own line; `make soak` tries it")
-    bench.into(State.READY, ())
-    bench._line.close()
-    file = write_trajectory(tmp_path)
+@pytest.mark.real_time
+def test_a_trajectory_is_followed_over_a_bad_line(port, tmp_path, request):
+    motion = swing(3.0, 41) if "[avr]" in request.node.name else swing()
+    with closing(open_port(port)) as line:
+        WireBench(line).into(State.READY, ())
+    file = write_trajectory(tmp_path, motion)
     with damaged_port(port, bit_flips(3e-4, 1), bit_flips(3e-4, 2)) as bad:
         report = run_trajectory(file, hand_limits(), bad)
     assert report.final_state == "READY" and report.resends + report.bad_frames > 0

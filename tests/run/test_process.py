@@ -28,6 +28,7 @@ from tests.run.proxy import damaged_port
 from tests.run.virtual import bit_flips, lost_bytes
 
 START = swing().position[0]
+pytestmark = pytest.mark.real_time
 
 
 @pytest.fixture(params=SIMULATED_PORTS)
