@@ -26,6 +26,8 @@ FLAGS = [
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
 ]
+SCREENSHOTS = Path(__file__).parents[2] / "build" / "screenshots"
+"""For people to look at; continuous integration keeps them."""
 PATIENCE_MS = 120_000
 """A loaded machine draws slowly; nothing here tests how fast."""
 

@@ -15,10 +15,10 @@ from fpcad.look.report import report_page
 from fpcad.look.run import Run
 from fpcad.model.geometry import link_poses
 from fpcad.model.hand import hand_template
-from tests.look.conftest import show
+from tests.look.conftest import SCREENSHOTS, show
 
-SCREENSHOTS = Path(__file__).parents[2] / "build" / "screenshots"
-"""For people to look at; continuous integration keeps them."""
+SLICE = 4000
+"""Height of one picture [CSS pixels]; longer ones repeat themselves."""
 
 PLACE = """(row) => {
   const plot = fpcad.figures.find((f) => f.box.closest("#pareto"));
@@ -133,22 +133,6 @@ def test_playing_moves_the_tool_and_pauses(opened: Page):
     assert opened.locator("#player .play").inner_text() == "Play"
 
 
-def test_the_keyboard_goes_from_hand_to_hand(opened: Page):
-    before = opened.evaluate("fpcad.state.selected")
-    opened.locator("#landscapes .plot").first.focus()
-    for key in ("ArrowLeft", "ArrowUp", "ArrowRight", "ArrowDown"):
-        opened.keyboard.press(key)
-        if opened.evaluate("fpcad.state.selected") != before:
-            return
-    pytest.fail("no arrow key goes to another hand")
-
-
-def test_a_typed_number_selects(opened: Page):
-    opened.locator("#pick").fill("2")
-    opened.keyboard.press("Enter")
-    assert opened.locator("#selected-title").inner_text() == "Hand 2"
-
-
 def test_a_filter_lets_pass_what_lies_inside(opened: Page, real_run: Run):
     column = next(c for c in real_run.score_columns if c.name.endswith("tmr_score"))
     scores = real_run.matrix([column.name])[:, 0]
@@ -166,7 +150,11 @@ def test_the_page_fits_and_its_picture_is_kept(browser: Browser, real_page: Path
     show(tab, real_page)
     assert tab.evaluate("document.documentElement.scrollWidth") <= width
     SCREENSHOTS.mkdir(parents=True, exist_ok=True)
-    tab.screenshot(path=SCREENSHOTS / f"report-{width}-{scheme}.png", full_page=True)
+    height = tab.evaluate("document.documentElement.scrollHeight")
+    for k, top in enumerate(range(0, height, SLICE)):
+        part = {"x": 0, "y": top, "width": width, "height": min(SLICE, height - top)}
+        file = SCREENSHOTS / f"report-{width}-{scheme}-{k + 1}.png"
+        tab.screenshot(path=file, full_page=True, clip=part)
     tab.close()
 
 
