@@ -7,10 +7,6 @@ import pytest
 from tests.firmware.lateness import judged_fairly
 
 
-def pytest_configure(config: pytest.Config) -> None:
-    config.addinivalue_line("markers", "real_time: judged again where the machine itself was late")
-
-
 @pytest.hookimpl(wrapper=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
     if pyfuncitem.get_closest_marker("real_time") is None:

@@ -10,6 +10,7 @@ from fpcad.run.messages import Ack, Arm, Reason, State
 from fpcad.run.quintic import evaluate
 from tests.firmware.byte_log import Recorded, kept_on_failure, replayed
 from tests.firmware.core import core_controller
+from tests.firmware.cuts import DIRECTIONS, Cuts, bytes_of_a_session
 from tests.firmware.line_faults import KINDS, FrameDamage
 from tests.run.fixtures import hand_limits, swing
 from tests.run.test_states import Bench, knot
@@ -99,3 +100,13 @@ def test_a_quintic_that_overshoots_between_legal_knots_is_refused(joint):
 
 def moving(message, velocity):
     return type(message)(**{**vars(message), "velocity_urad_s": tuple(velocity.tolist())})
+
+
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_a_cut_after_every_11th_byte_of_a_session(direction):
+    """Every byte, loud and silent, is for `make soak`."""
+    cuts = Cuts()
+    for number, cut in enumerate(range(0, bytes_of_a_session(direction) - 1, 11)):
+        cuts.add(cut, direction, loud=number % 2 == 0)
+    print(cuts)
+    assert set(cuts.ends) <= {"LinkLost", "ControllerSilent"}

@@ -1,10 +1,10 @@
 import pytest
 
 from tests.firmware.core import core_controller, library
-from tests.firmware.real_time import pytest_configure, pytest_pyfunc_call
+from tests.firmware.real_time import pytest_pyfunc_call
 from tests.run import virtual
 
-__all__ = ["each_controller", "pytest_configure", "pytest_pyfunc_call"]
+__all__ = ["each_controller", "pytest_pyfunc_call"]
 
 
 @pytest.fixture(params=["simulator", "firmware"])

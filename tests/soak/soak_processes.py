@@ -8,7 +8,9 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,10 +19,13 @@ import pytest
 from fpcad.run.codec import KINDS, encode
 from fpcad.run.errors import ControllerHeld
 from fpcad.run.framing import Frame, FrameReader, encode_frame
+from fpcad.run.limits import read_limits
 from fpcad.run.messages import Ack, Estop, Ping, State
 from fpcad.run.port import open_port
+from fpcad.run.report import RunReport
 from fpcad.run.run_trajectory import SIMULATED_PORTS, run_trajectory
 from tests.firmware.core import made
+from tests.firmware.lateness import Lateness, judged_fairly
 from tests.firmware.targets import SETUPS, running
 from tests.firmware.wire import WireBench
 from tests.run.fixtures import hand_limits, swing, write_trajectory
@@ -77,34 +82,77 @@ def stopping(folder: Path) -> tuple[float, float, State]:
     return float(resting[0] - running[-1]), float(acceleration), State(int(state[-1]))
 
 
+PHASES = 50
+AT_ONCE = 4
+"""Hosts side by side; each is idle nearly all the time."""
+
+
+@dataclass(frozen=True)
+class Struck:
+    """How a hand fared whose host was struck."""
+
+    phase_s: float
+    outlived_s: float
+    slowing_s: float
+    acceleration: float
+    state: str
+
+
+def strike(blow: signal.Signals, phase_s: float, folder: Path) -> Struck:
+    folder.mkdir()
+    process, device = host(folder)
+    wait_for_path(process, phase_s)
+    process.send_signal(blow)
+    struck = time.monotonic()
+    if blow == signal.SIGSTOP:
+        time.sleep(1.0)
+        process.kill()
+    process.wait()
+    wait_until(lambda: is_gone(device))
+    outlived = time.monotonic() - struck
+    seconds, acceleration, state = stopping(folder)
+    return Struck(phase_s, outlived, seconds, acceleration, state.name)
+
+
 @pytest.mark.parametrize("blow", [signal.SIGKILL, signal.SIGSTOP])
 def test_a_host_that_dies_or_freezes_at_any_phase(blow, tmp_path):
-    phases = np.random.default_rng(SEED).uniform(0.05, 5.0, 25)
-    slowest, hardest, ends, outlived = 0.0, 0.0, Counter(), []
-    for number, phase in enumerate(phases):
-        folder = tmp_path / str(number)
-        folder.mkdir()
-        process, device = host(folder)
-        wait_for_path(process, phase)
-        process.send_signal(blow)
-        struck = time.monotonic()
-        if blow == signal.SIGSTOP:
-            time.sleep(1.0)
-            process.kill()
-        process.wait()
-        wait_until(lambda device=device: is_gone(device))
-        outlived.append(time.monotonic() - struck)
-        seconds, acceleration, state = stopping(folder)
-        slowest, hardest = max(slowest, seconds), max(hardest, acceleration)
-        ends[state.name] += 1
+    phases = np.random.default_rng(SEED).uniform(0.05, 5.0, PHASES)
+    with Lateness() as machine, ThreadPoolExecutor(AT_ONCE) as pool:
+        jobs = [pool.submit(strike, blow, p, tmp_path / f"{i}") for i, p in enumerate(phases)]
+        hands = [job.result() for job in jobs]
+    slowest, hardest = max(h.slowing_s for h in hands), max(h.acceleration for h in hands)
+    outlived = [h.outlived_s for h in hands]
     print(
-        f"\n{blow.name} at 25 phases, seed {SEED}: {dict(ends)}; the firmware outlived it for "
-        f"{np.median(outlived):.3f} s (median), {max(outlived):.3f} s (most); slowing down took at "
-        f"most {slowest:.3f} s, acceleration at most {hardest:.2f} of {ACCELERATION:.2f} rad/s^2"
+        f"\n{blow.name} at {PHASES} phases, seed {SEED}: {dict(Counter(h.state for h in hands))}; the "
+        f"firmware outlived it for {np.median(outlived):.3f} s (median), {max(outlived):.3f} s (most); "
+        f"slowing down took at most {slowest:.3f} s, acceleration at most {hardest:.2f} of "
+        f"{ACCELERATION:.2f} rad/s^2; the machine was {machine.worst_s * 1e3:.0f} ms late at most"
     )
-    # The firmware ends once its joints stand; the longest life also tells how busy the machine was.
-    assert ends == {"HOLD": 25} and hardest <= ACCELERATION * 1.05
-    assert np.median(outlived) < (0.75 if blow == signal.SIGKILL else 1.25)
+    assert {h.state for h in hands} == {"HOLD"} and hardest <= ACCELERATION * 1.05
+    # The firmware ends once its joints stand; its longest life also tells how late the machine was.
+    alive_s = (0.6 if blow == signal.SIGKILL else 1.1) + slowest
+    assert np.median(outlived) < alive_s + machine.worst_s
+
+
+CLAY = sorted((Path(__file__).parents[2] / "build/clay/trajectories").glob("*.json"))
+
+
+@pytest.mark.skipif(not CLAY, reason="needs `make design NAME=clay` first")
+@pytest.mark.parametrize("file", CLAY, ids=lambda file: file.stem)
+def test_trajectories_of_a_build_stream_on_a_busy_machine(file):
+    """At their own spacing: some 30 knots a second and more, with four busy processes beside."""
+    made("host")
+    hand = file.parents[1] / "hand"
+    urdf = next((hand / "urdf").glob("*.urdf"))
+    limits = read_limits(urdf, np.radians(720.0), hand / "transmission.yaml")
+    with busy(), Lateness() as machine:
+        report = run_trajectory(file, limits, "fw", loops=3)
+    print(
+        f"\n{file.stem}, three times, 4 busy processes: {report.knots} knots in {report.seconds:.1f} s "
+        f"({report.knots / report.seconds:.1f} a second), 0 underruns, {report.resends} resends, largest "
+        f"error {report.max_error_all_rad:.4f} rad; the machine was {machine.worst_s * 1e3:.0f} ms late at most"
+    )
+    assert report.final_state == "READY" and report.knots / report.seconds >= 25
 
 
 @pytest.mark.parametrize("stall_s", [0.05, 0.2, 0.45])
@@ -146,14 +194,18 @@ def test_a_longer_stall_holds_and_is_not_resumed(stall_s, tmp_path):
     assert State(int(read_record(tmp_path / "record")[-1, 1])) is State.HOLD
 
 
+def over_a_bad_line(name: str, file: Path, seed: int) -> RunReport:
+    damage = bit_flips(3e-4, seed), bit_flips(3e-4, seed + 9)
+    with damaged_port(name, *damage) as port:
+        return run_trajectory(file, hand_limits(), port, clear=True)
+
+
 @pytest.mark.parametrize("target", SETUPS)
 def test_microcontrollers_follow_over_a_bad_line(target, tmp_path):
     file, resends, bad = write_trajectory(tmp_path, swing(3.0, 46)), 0, 0
     with running(target) as name:
         for seed in range(5):
-            damage = bit_flips(3e-4, seed), bit_flips(3e-4, seed + 9)
-            with damaged_port(name, *damage) as port:
-                report = run_trajectory(file, hand_limits(), port)
+            report = judged_fairly(lambda seed=seed: over_a_bad_line(name, file, seed), target)
             resends, bad = resends + report.resends, bad + report.bad_frames
             assert report.final_state == "READY"
     print(f"\n{target}: 5 runs at 3e-4 flips a byte, {resends} resends, {bad} bad frames")

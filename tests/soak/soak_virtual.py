@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import random
 import resource
+import subprocess
 from collections import Counter
 from dataclasses import dataclass
 
@@ -12,18 +13,21 @@ import numpy as np
 import pytest
 
 from fpcad.run.driver import Watch
-from fpcad.run.errors import ControllerHeld, ControllerSilent, LinkLost, RunError
+from fpcad.run.errors import ControllerHeld, ControllerSilent, LinkLost
 from fpcad.run.firmware import FirmwareDriver
 from fpcad.run.knots import from_wire, to_wire
 from fpcad.run.messages import State
 from fpcad.run.quintic import evaluate
 from fpcad.run.trajectory import repeated
-from tests.firmware.core import core_controller
+from tests.firmware.byte_log import Recorded, kept_on_failure
+from tests.firmware.core import core_controller, made
+from tests.firmware.cuts import DIRECTIONS, Cuts, bytes_of_a_session
 from tests.run.fixtures import hand_limits, swing
 from tests.run.test_stream import KNOTS
 from tests.run.virtual import Damage, VirtualLine, bit_flips, lost_bytes, lost_frames
 
-FRAMES = 1_000_000
+FRAMES = {"bit_flips": 1_000_000, "lost_bytes": 300_000, "mangled": 300_000}
+"""Frames that pass in both directions, by the damage done to them."""
 TICK_US = 4_000
 WANTED = np.rint(
     evaluate(
@@ -44,7 +48,8 @@ class FaithfulTick:
             self.ticks += 1
             assert view.path_us % TICK_US == 0
             error = np.abs(np.array(view.command) - WANTED[view.path_us // TICK_US]).max()
-            assert error <= 1, f"{error} counts off at {view.path_us} us"
+            with kept_on_failure(line.device, "damaged_run"):
+                assert error <= 1, f"{error} counts off at {view.path_us} us"
 
 
 def mangled(rate: float, seed: int) -> Damage:
@@ -79,7 +84,7 @@ class Tally:
 def damaged_run(damage, rate: float, seed: int, tally: Tally) -> str:
     """One run of four seconds; how it ended."""
     line = VirtualLine(
-        core_controller(),
+        Recorded(core_controller()),
         to_device=damage(rate, seed),
         to_host=damage(rate, seed + 10**6),
         baud_rate=115_200,
@@ -87,7 +92,6 @@ def damaged_run(damage, rate: float, seed: int, tally: Tally) -> str:
     )
     tally.runs += 1
     end = "complete"
-    heard = 0
     try:
         driver = FirmwareDriver(line, hand_limits(), line.clock)
         driver.ready(clear=False)
@@ -98,7 +102,8 @@ def damaged_run(damage, rate: float, seed: int, tally: Tally) -> str:
     except (LinkLost, ControllerHeld, ControllerSilent) as error:
         end = type(error).__name__
         line.let_pass(1.5)
-        assert line.device.follower.rate == 0
+        with kept_on_failure(line.device, "damaged_run"):
+            assert line.device.follower.rate == 0
     heard = int(line.device.time_us / 20_000 * 1.2)  # telemetry and health
     tally.frames += len(line.log) + heard
     return end
@@ -109,7 +114,7 @@ def test_a_million_damaged_frames(damage):
     rates = (1e-5, 1e-4, 1e-3, 3e-3, 1e-2)
     for rate in rates:
         tally, ends, seed = Tally(), Counter(), 0
-        while tally.frames < FRAMES / 3 / len(rates):
+        while tally.frames < FRAMES[damage.__name__] / len(rates):
             ends[damaged_run(damage, rate, seed, tally)] += 1
             seed += 1
         print(f"\n{damage.__name__} {rate:g} a byte, seeds 0..{seed - 1}: {tally}, {dict(ends)}")
@@ -125,75 +130,13 @@ def test_lost_doubled_and_late_frames(rate):
     assert ends["complete"] == tally.runs
 
 
-class CutLine(VirtualLine):
-    """Breaks after so many bytes in one direction, with an error of the port or in silence."""
-
-    limit: int = 0
-    direction: str = "out"
-    loud: bool = True
-    passed: int = 0
-
-    def _spend(self, data: bytes, direction: str) -> bytes:
-        if direction != self.direction:
-            return data if self.connected else b""
-        left = max(self.limit - self.passed, 0)
-        self.passed += len(data)
-        if self.passed > self.limit:
-            self.connected = False
-        return data[:left]
-
-    def write(self, data: bytes) -> None:
-        if not self.connected and self.loud:
-            raise LinkLost("the line broke")
-        kept = self._spend(data, "out")
-        self.log.append(data)
-        self._to_device += kept
-        self._deliver(None)
-
-    def read(self) -> bytes:
-        if not self.connected and self.loud:
-            raise LinkLost("the line broke")
-        return self._spend(super().read(), "in")
-
-
 @pytest.mark.parametrize("loud", [True, False], ids=["port error", "silence"])
-@pytest.mark.parametrize("direction", ["out", "in"])
-def test_a_cut_after_any_byte_of_a_session(direction, loud):
-    motion = swing(1.0, 26, amplitude=0.04)
-    cut, ends, worst_host, worst_stop = 0, Counter(), 0.0, 0.0
-    while True:
-        line = CutLine(core_controller())
-        line.limit, line.direction, line.loud = cut, direction, loud
-        broke_at, stopped_at = [], []
-
-        def note(line, broke_at=broke_at, stopped_at=stopped_at):
-            if not line.connected and not broke_at:
-                broke_at.append(line.now_s)
-            stands = line.device.state is not State.RUNNING and line.device.follower.rate == 0
-            if broke_at and not stopped_at and stands:
-                stopped_at.append(line.now_s)
-
-        line.on_tick = note
-        try:
-            driver = FirmwareDriver(line, hand_limits(), line.clock, patience_s=0.5)
-            driver.ready(clear=False)
-            driver.play(motion, Watch(lambda _sample: None, lambda: 0))
-            break  # the cut lies behind the session's end
-        except RunError as error:
-            ends[type(error).__name__] += 1
-        ended = line.now_s
-        line.let_pass(1.0)
-        assert stopped_at and line.device.follower.rate == 0
-        worst_host = max(worst_host, ended - (broke_at or [ended])[0])
-        worst_stop = max(worst_stop, stopped_at[0] - broke_at[0])
-        again = VirtualLine(line.device)
-        assert FirmwareDriver(again, hand_limits(), again.clock).ready(clear=True).state == "READY"
-        cut += 11
-    print(
-        f"\ncut {direction}, {'port error' if loud else 'silence'}, every 11th of {cut} bytes: "
-        f"{dict(ends)}; host ends within {worst_host:.3f} s, joints stand within {worst_stop:.3f} s"
-    )
-    assert worst_host <= 1.0 and worst_stop <= 0.7
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_a_cut_after_each_byte_of_a_session(direction, loud):
+    cuts = Cuts()
+    for cut in range(bytes_of_a_session(direction) - 1):
+        cuts.add(cut, direction, loud)
+    print(f"\ncut {direction} after each byte, {'port error' if loud else 'silence'}: {cuts}")
 
 
 class SkewedLine(VirtualLine):
@@ -236,3 +179,12 @@ def test_clocks_that_differ_over_ten_minutes(skew_ppm):
     )
     assert played.final_state == "READY" and drift <= 1.0
     assert growth < 4096
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_ten_million_bytes_of_anything(seed):
+    """With sanitizers of addresses and of undefined behaviour."""
+    fuzz = made("fuzz") / "fuzz"
+    done = subprocess.run([fuzz, "10000000", str(seed)], capture_output=True, text=True)
+    print(f"\nseed {seed}: {done.stdout.strip()}")
+    assert done.returncode == 0, done.stderr
