@@ -13,7 +13,10 @@ Row = dict[str, str]
 
 BOM, CHECKS = Path("parts") / "bom.csv", Path("parts") / "checks.csv"
 SEVERITIES = ("error", "warning", "figure")
+FIGURES = ("value", "limit")
 SHOWN_REFUSALS = 10
+MOST_WARNINGS = 2
+"""Of the checks at the top of the page; more of them would hide what it is about."""
 
 
 def parts_list(run: Run) -> list[Row]:
@@ -24,16 +27,31 @@ def parts_list(run: Run) -> list[Row]:
 def checks(run: Run) -> list[Row]:
     """Findings of parts/checks.csv, the gravest first; none before the export is done."""
     rank = {severity: k for k, severity in enumerate(SEVERITIES)}
-    return sorted(_rows(run, CHECKS), key=lambda row: rank.get(row.get("severity", ""), len(rank)))
+    found = [
+        {**row, **{name: _short(row.get(name, "")) for name in FIGURES}}
+        for row in _rows(run, CHECKS)
+    ]
+    return sorted(found, key=lambda row: rank.get(row.get("severity", ""), len(rank)))
+
+
+def _short(number: str) -> str:
+    """A number with three digits; what is none stays as it is."""
+    try:
+        return f"{float(number):.3g}"
+    except ValueError:
+        return number
 
 
 def check_warnings(run: Run) -> list[str]:
-    """What the gates warn of, a sentence each."""
-    return [
-        f"{row.get('part', '')}: {row.get('text', '')}."
+    """What the gates warn of: a sentence each, or one for all where they are more than two."""
+    found = [
+        f"{row.get('part', '')}: {row.get('text', '')}"
         for row in checks(run)
         if row.get("severity") in SEVERITIES[:2]
     ]
+    if len(found) <= MOST_WARNINGS:
+        return [f"{text}." for text in found]
+    return [f"The checks of the chosen hand warn {len(found)} times; the first: {found[0]}."]
 
 
 def torque_warnings(run: Run) -> list[str]:

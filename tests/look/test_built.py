@@ -8,7 +8,7 @@ from pathlib import Path
 import pyarrow as pa
 import pytest
 
-from fpcad.look.built import checks, parts_list, refusals, torque_warnings
+from fpcad.look.built import check_warnings, checks, parts_list, refusals, torque_warnings
 from fpcad.look.document import build_document
 from fpcad.look.run import Run, load
 from fpcad.look.words import summarize
@@ -45,6 +45,13 @@ def test_warnings_of_the_gates_stand_at_the_top_and_figures_do_not(exported: Run
     assert not any("clearance" in warning for warning in told.warnings)
     assert [row["severity"] for row in told.checks] == ["warning", "figure"]
     assert told.parts == [{"item": "palm", "count": "1"}]
+
+
+def test_many_warnings_of_the_gates_are_one_at_the_top(exported: Run):
+    row = "walls,warning,palm,0.9,1.2,mm,1,2,3,a wall of 0.90 mm\n"
+    write_whole(exported.folder / "parts" / "checks.csv", FOUND + 4 * row)
+    (told,) = check_warnings(exported)
+    assert "warn 5 times; the first: palm: a wall of 0.90 mm where" in told
 
 
 def test_what_was_left_by_an_export_that_is_not_done_is_not_told(exported: Run):
