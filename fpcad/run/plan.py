@@ -33,9 +33,11 @@ def planned(trajectory_file: Path, limits: JointLimits, speed: float, loops: int
     """The file's motion in the controller's order, checked as it will be sent."""
     once = slowed(in_order(read_trajectory(trajectory_file), limits), speed)
     _require_preload(once, limits)
-    # What counts is what is sent: the controller will check the same segments again.
-    require_within(from_wire(to_wire(once).messages), limits)
-    return repeated(once, loops)
+    whole = repeated(once, loops)
+    # What counts is what is sent: the controller will check the same segments again, and a long
+    # run of close knots is sampled anew.
+    require_within(from_wire(to_wire(whole).messages), limits)
+    return whole
 
 
 def closed(knots: Knots, present_preload: Array) -> Knots:
