@@ -131,7 +131,7 @@ def _torque_differences(model: Simulated, robot: Urdf) -> Iterator[str]:
     """What the motors give each joint alone, against the URDF's effort."""
     joints = [joint for joint in robot.moving() if joint.name in model.joints and joint.limit]
     A = model.motor_matrix([joint.name for joint in joints])
-    if A.shape[0] != A.shape[1] or abs(np.linalg.det(A)) < 1e-12:
+    if A.shape[0] != A.shape[1] or np.linalg.matrix_rank(A) < len(A):
         return  # not one motor for each joint: a box of torques says nothing of the motors
     used = np.abs(np.linalg.inv(A.T))  # torque of each motor for one unit of each joint's
     torques = np.broadcast_to(model.motor_torques()[:, None], used.shape)
@@ -154,7 +154,7 @@ def _matrix(file: Path, table: Any) -> Array | Fault:
     expected = len(table["motors"]), len(table["joints"])
     if matrix.shape != expected:
         return Fault(file.name, f"its matrix is {matrix.shape}; motors and joints make {expected}")
-    if matrix.shape[0] == matrix.shape[1] and abs(np.linalg.det(matrix)) < 1e-12:
+    if np.linalg.matrix_rank(matrix) < matrix.shape[1]:
         return Fault(file.name, "its matrix is singular: some motion of the joints moves no motor")
     return matrix
 
@@ -201,7 +201,7 @@ def link_poses(robot: Urdf, joints: dict[str, float]) -> dict[str, Array]:
     while ready := [joint for joint in waiting if joint.parent in poses]:
         for joint in ready:
             poses[joint.child] = poses[joint.parent] @ joint.pose @ _moved(joint, joints)
-        waiting = [joint for joint in waiting if joint.parent not in poses]
+        waiting = [joint for joint in waiting if joint not in ready]
     return poses
 
 

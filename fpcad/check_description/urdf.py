@@ -52,7 +52,7 @@ class Limit:
     soft: tuple[float, float] | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Joint:
     """A joint between two links."""
 
