@@ -7,24 +7,9 @@ import pytest
 
 from fpcad.run.messages import MAX_JOINTS
 from tests.firmware.core import library
+from tests.firmware.half_duplex import Line, Mount, Readings, goals_at, line_to
 
 STEP_RAD = 2 * np.pi / 4096
-TRANSMIT = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.POINTER(ctypes.c_uint8), ctypes.c_uint8)
-RECEIVE = ctypes.CFUNCTYPE(
-    ctypes.c_uint8,
-    ctypes.c_void_p,
-    ctypes.POINTER(ctypes.c_uint8),
-    ctypes.c_uint8,
-    ctypes.c_uint16,
-)
-
-
-class Line(ctypes.Structure):
-    _fields_ = (("context", ctypes.c_void_p), ("transmit", TRANSMIT), ("receive", RECEIVE))
-
-
-class Mount(ctypes.Structure):
-    _fields_ = (("id", ctypes.c_uint8), ("sign", ctypes.c_int8), ("zero", ctypes.c_int16))
 
 
 class Bus(ctypes.Structure):
@@ -33,24 +18,6 @@ class Bus(ctypes.Structure):
         ("count", ctypes.c_uint8),
         ("mounts", Mount * MAX_JOINTS),
         ("torque_on", ctypes.c_bool),
-    )
-
-
-class Goals(ctypes.Structure):
-    _fields_ = (
-        ("position", ctypes.c_int32 * MAX_JOINTS),
-        ("velocity", ctypes.c_int32 * MAX_JOINTS),
-        ("torque_on", ctypes.c_bool),
-        ("current_ma", ctypes.c_int16),
-    )
-
-
-class Readings(ctypes.Structure):
-    _fields_ = (
-        ("position", ctypes.c_int32 * MAX_JOINTS),
-        ("current_ma", ctypes.c_int16 * MAX_JOINTS),
-        ("temperature_c", ctypes.c_int8 * MAX_JOINTS),
-        ("answered", ctypes.c_bool * MAX_JOINTS),
     )
 
 
@@ -66,15 +33,14 @@ class Servos:
         self.memory = {ident: bytearray(80) for ident in range(1, count + 1)}
         self.sent, self.answer = [], b""
         self.dead, self.flips, self.error = set(), 0, 0
-        self._line = Line(None, TRANSMIT(self._hear), RECEIVE(self._say))
+        self._line = line_to(self._hear, self._say)
         self.bus = Bus(ctypes.pointer(self._line), count)
         for i, ident in enumerate(self.memory):
             self.bus.mounts[i] = Mount(ident, -1 if i == 1 else 1, 2048)
             self.memory[ident][56:58] = (2048).to_bytes(2, "little")
         self.readings = Readings()
 
-    def _hear(self, _context, data, count):
-        said = bytes(data[:count])
+    def _hear(self, said):
         self.sent.append(said)
         assert said == packet(said[2], said[4], *said[5:-1])
         if said[4] == 0x83:
@@ -93,16 +59,14 @@ class Servos:
         if memory[40]:
             memory[56:58] = memory[42:44]
 
-    def _say(self, _context, out, room, _patience_us):
+    def _say(self, room):
         said, self.answer = bytearray(self.answer[:room]), b""
         if said and self.flips:
             said[self.flips] ^= 4
-        ctypes.memmove(out, bytes(said), len(said))
-        return len(said)
+        return bytes(said)
 
-    def exchange(self, angles_rad, torque_on=True):
-        goals = Goals(torque_on=torque_on)
-        goals.position[: len(angles_rad)] = [round(a * 1e6) for a in angles_rad]
+    def exchange(self, angles_rad, **changes):
+        goals = goals_at(angles_rad, **changes)
         self.sent.clear()
         library().servo_bus_exchange(
             ctypes.byref(self.bus), ctypes.byref(goals), ctypes.byref(self.readings)
@@ -182,3 +146,11 @@ def test_current_and_temperature_are_read():
     servos.memory[1][69:71] = (0x8000 | 100).to_bytes(2, "little")
     read = servos.exchange([0])
     assert (read.temperature_c[0], read.current_ma[0]) == (41, -650)
+
+
+def test_a_bound_on_the_current_is_a_share_of_the_torque():
+    servos = Servos(1)
+    servos.exchange([0], current_ma=270)
+    assert int.from_bytes(servos.memory[1][48:50], "little") == 100
+    servos.exchange([0])
+    assert int.from_bytes(servos.memory[1][48:50], "little") == 1000
