@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
+from pathlib import Path
 
-from fpcad.make.parts.dimensions import PIN_RADIUS_MM, Dimensions
-from fpcad.make.parts.mcp import PIN_BOTTOM_MM
-from fpcad.make.parts.part import Part
+from fpcad.make.documents.stamp import Stamp
+from fpcad.make.parts.assembly import Assembly, BoughtItem
+from fpcad.make.parts.catalogue import TABLES, table
+from fpcad.make.power import power
+from fpcad.spec.catalogue import motor
 from fpcad.spec.schema import Spec
+from fpcad.store import write_whole
+
+MATERIALS = {"endoskeleton": "rigid (PLA or the like)", "skin": "flexible (TPE)"}
+MOTORS = "motors"
 
 
 @dataclass(frozen=True)
@@ -21,71 +28,102 @@ class BomRow:
     kind: str
     """`printed` or `bought`."""
     count: int
+    size: str
+    """Size of a bought item."""
     material: str
     file: str
-    """Mesh of a printed part, relative to the build's `parts` folder."""
+    """Mesh of a printed part as it lies on the bed, relative to the build's `parts` folder."""
     mass_g: str
     """Mass of one piece [g], where fpcad knows it."""
+    volume_cm3: str
+    """Volume of one printed piece [cm^3]."""
+    hours: str
+    """Time to print one piece [h], where it was sliced."""
+    source: str
+    """Where the sizes of a bought item are from."""
     note: str
 
 
 def bill_of_materials(
-    spec: Spec, d: Dimensions, parts: Sequence[Part], fingers: int, motor_mass_g: float
+    spec: Spec, assembly: Assembly, fingers: int, hours: Mapping[str, float]
 ) -> list[BomRow]:
-    """Printed parts first, then what is bought."""
+    """Printed parts first, then what is bought.
+
+    Args:
+        hours: print time of one piece by part, of those that were sliced.
+    """
     density = {
         "endoskeleton": spec.print.bone_density_g_cm3,
         "skin": spec.print.skin_density_g_cm3,
     }
-    material = {"endoskeleton": "rigid (PLA or the like)", "skin": "flexible (TPE)"}
     printed = [
         BomRow(
-            part.name,
-            "printed",
-            part.count,
-            material[part.material],
-            f"{part.material}/{part.name}.stl",
-            f"{part.mesh.volume * density[part.material] * 1e-3:.2f}",
-            "",
+            item=part.name,
+            kind="printed",
+            count=part.count,
+            size="",
+            material=MATERIALS[part.material],
+            file=f"print/{part.name}.3mf",
+            mass_g=f"{part.mesh.volume * density[part.material] * 1e-3:.2f}",
+            volume_cm3=f"{part.mesh.volume * 1e-3:.3f}",
+            hours=f"{hours[part.name]:.2f}" if part.name in hours else "",
+            source="",
+            note="mass as if printed solid",
         )
-        for part in parts
+        for part in assembly.parts
     ]
-    motor = BomRow(
-        spec.motors.type, "bought", 3 * fingers, "", "", f"{motor_mass_g:g}", "three a finger"
-    )
-    return [*printed, *_pins(d, fingers), motor]
-
-
-def _pins(d: Dimensions, fingers: int) -> list[BomRow]:
-    diameter = 2 * PIN_RADIUS_MM
-    lengths = (
-        ("mcp_flexion_pin", fingers, 2 * (d.root - d.clearance), "through ears and MCP cross"),
-        (
-            "mcp_abduction_pin",
-            2 * fingers,
-            d.fork_outer - d.pin_hole - PIN_BOTTOM_MM,
-            "fork to cross",
-        ),
-        ("ip_pin", fingers, 2 * d.ip_half_width, "through clevis and tongue"),
-    )
-    return [
-        BomRow(
-            name,
-            "bought",
-            count,
-            "steel",
-            "",
-            "",
-            f"dowel pin {diameter:g} mm, {length:.1f} mm long: {where}",
+    bought = [_item(item) for item in assembly.bought]
+    if not any(item.kind == MOTORS for item in assembly.bought):
+        row = motor(spec.motors.type)
+        bought.append(
+            _bought(MOTORS, 3 * fingers, row.type, f"{row.mass_g:g}", row.source, "three a finger")
         )
-        for name, count, length, where in lengths
-    ]
+    return [*printed, *bought, *_electrical(spec, 3 * fingers)]
 
 
-def bom_csv(rows: Sequence[BomRow]) -> str:
-    """The bill as CSV with a header line."""
+def bom_csv(rows: Sequence[BomRow], stamp: Stamp) -> str:
+    """The bill as CSV with a header line; the last columns tell what hand and spec it is of."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow([field.name for field in fields(BomRow)])
-    writer.writerows(astuple(row) for row in rows)
+    writer.writerow([*(field.name for field in fields(BomRow)), "hand", "spec_sha256"])
+    writer.writerows([*astuple(row), stamp.hand, stamp.spec_sha256] for row in rows)
     return stream.getvalue()
+
+
+def _item(item: BoughtItem) -> BomRow:
+    size = item.size if item.length_mm is None else f"{item.size} x {item.length_mm:g} mm"
+    source = ""
+    if item.kind in TABLES and item.size in table(item.kind):
+        source = getattr(table(item.kind)[item.size], "source", "")
+    elif item.kind == MOTORS:
+        source = motor(item.size).source
+    return _bought(item.name, item.count, size, f"{item.mass_g:.2f}", source, item.kind)
+
+
+def _electrical(spec: Spec, motors: int) -> list[BomRow]:
+    need = power(spec.motors.type, motors)
+    rule = "half of the motors at stall; " + need.source
+    return [
+        _bought("power_supply", 1, f"{need.supply_v:g} V, {need.supply_a:g} A or more", "", rule, ""),
+        _bought("fuse", 1, f"{need.fuse_a:g} A blade fuse with holder", "", "ISO 8820-3", "in the + lead"),
+        _bought("supply_lead", 2, f"{need.wire_mm2:g} mm^2 copper, 1 m", "", "", "red and black, XT30 plug"),
+        _bought("emergency_switch", 1, f"{need.fuse_a:g} A or more", "", "", "breaks the + lead"),
+        _bought("bus_adapter", 1, need.adapter, "", need.source, "USB to the motors' bus"),
+        _bought("motor_cable", motors, need.cable, "", need.source, "one a motor"),
+    ]  # fmt: skip
+
+
+def _bought(name: str, count: int, size: str, mass: str, source: str, note: str) -> BomRow:
+    return BomRow(name, "bought", count, size, "", "", mass, "", "", source, note)
+
+
+def write_hours(file: Path, hours: Mapping[str, float]) -> None:
+    """Put print times [h] by part into a bill that was written before."""
+    rows = list(csv.reader(file.read_text(encoding="utf-8").splitlines()))
+    column, item = rows[0].index("hours"), rows[0].index("item")
+    for row in rows[1:]:
+        if row[item] in hours:
+            row[column] = f"{hours[row[item]]:.2f}"
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows(rows)
+    write_whole(file, stream.getvalue())

@@ -9,23 +9,26 @@ from types import MappingProxyType
 
 from fpcad.make.bom import bill_of_materials, bom_csv
 from fpcad.make.description import LinkBody, describe, write_description
+from fpcad.make.documents.inventory import write_inventory
+from fpcad.make.documents.print_ready import write_print_files
+from fpcad.make.documents.stamp import Stamp
+from fpcad.make.documents.step_files import assembly_step, part_step
 from fpcad.make.gates.all_gates import pass_gates
 from fpcad.make.gates.finding import Severity
 from fpcad.make.gates.table import FILE as CHECKS
 from fpcad.make.gates.table import findings_csv
 from fpcad.make.inertia import inertia_of
 from fpcad.make.mesh import in_metres, stl_bytes
-from fpcad.make.parts.assembly import Progress, make_assembly
-from fpcad.make.parts.dimensions import finger_dimensions
+from fpcad.make.parts.assembly import Assembly, Progress, make_assembly
 from fpcad.make.parts.part import Part
-from fpcad.make.parts.step import step_bytes
 from fpcad.make.trajectory import Trajectory
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.geometry import HandGeometry
-from fpcad.spec.catalogue import motor
+from fpcad.spec.dump import spec_hash
 from fpcad.spec.schema import Spec
 from fpcad.store import write_whole
 
+ASSEMBLY_STEP = "assembly.step"
 log = logging.getLogger(__name__)
 
 VISUAL_FOLDER = Path("meshes") / "visual"
@@ -38,6 +41,7 @@ def make_hand(
     out: Path,
     progress: Progress = log.debug,
     trajectories: Mapping[str, Trajectory] = MappingProxyType({}),
+    candidate: int | None = None,
 ) -> list[Path]:
     """Make a hand's parts and description and write them under `out`, a build's folder.
 
@@ -45,18 +49,16 @@ def make_hand(
     the trajectories, by pose. Returns the files written. Raises
     :class:`fpcad.errors.MakeError` naming the part that cannot be made.
     """
+    stamp = Stamp(spec.name, candidate, spec_hash(spec))
     assembly = make_assembly(spec, geometry, progress)
-    parts, row = assembly.parts, motor(spec.motors.type)
     findings = pass_gates(spec, assembly, geometry, trajectories, progress)
     for finding in findings:
         if finding.severity is Severity.WARNING:
             log.info("%s", finding)
     progress("files")
-    files = _part_files(parts, out / "parts")
-    files.append(write_whole(out / "parts" / CHECKS, findings_csv(findings)))
-    dimensions = finger_dimensions(spec, geometry)
-    bill = bill_of_materials(spec, dimensions, parts, len(geometry.fingers), row.mass_g)
-    files.append(write_whole(out / "parts" / "bom.csv", bom_csv(bill)))
+    parts, folder = assembly.parts, out / "parts"
+    files = write_parts(spec, assembly, geometry, folder, stamp)
+    files.append(write_whole(folder / CHECKS, findings_csv(findings)))
     files += [
         write_whole(out / "hand" / VISUAL_FOLDER / f"{p.name}.stl", stl_bytes(in_metres(p.mesh)))
         for p in parts
@@ -67,16 +69,22 @@ def make_hand(
     return files
 
 
-def _part_files(parts: Sequence[Part], folder: Path) -> list[Path]:
-    stls = [
-        write_whole(folder / part.material / f"{part.name}.stl", stl_bytes(part.mesh))
-        for part in parts
-    ]
-    steps = [
-        write_whole(folder / "step" / f"{part.name}.step", step_bytes(part.name, part.solid))
-        for part in parts
-    ]
-    return stls + steps
+def write_parts(
+    spec: Spec, assembly: Assembly, geometry: HandGeometry, folder: Path, stamp: Stamp
+) -> list[Path]:
+    """Write what is printed and bought: meshes, solids, print files, list and bill."""
+    files = []
+    for part in assembly.parts:
+        mesh = stamp.on_stl(stl_bytes(part.mesh))
+        files.append(write_whole(folder / part.material / f"{part.name}.stl", mesh))
+        solid = part_step(part.name, part.solid, stamp)
+        files.append(write_whole(folder / "step" / f"{part.name}.step", solid))
+    whole = assembly_step(assembly, geometry, stamp)
+    files.append(write_whole(folder / "step" / ASSEMBLY_STEP, whole))
+    files += write_print_files(assembly.parts, spec.print, folder, stamp)
+    files += write_inventory(assembly, folder, stamp)
+    bill = bill_of_materials(spec, assembly, len(geometry.fingers), {})
+    return [*files, write_whole(folder / "bom.csv", bom_csv(bill, stamp))]
 
 
 def link_bodies(spec: Spec, parts: Sequence[Part]) -> dict[str, LinkBody]:

@@ -15,6 +15,8 @@ from fpcad.units import M_PER_MM, RAD_PER_DEG
 
 MERGE_DIGITS = 6
 """Decimals [mm] to which a kernel's copies of one vertex agree."""
+STEADY_DIGITS = 9
+"""Decimals [mm] that are the same whenever a part is made."""
 INTERFERENCE_MM3 = 1e-3
 """Common volume from which two parts count as interfering; meshes that only touch stay below it."""
 
@@ -28,6 +30,8 @@ def mesh_of(name: str, solid: Solid, settings: Print) -> trimesh.Trimesh:
     vertices, faces = solid.tessellate(tolerance, angle)
     mesh = trimesh.Trimesh([v.toTuple() for v in vertices], faces, process=False)
     mesh.merge_vertices(digits_vertex=MERGE_DIGITS)
+    # The kernel's last bits differ from run to run.
+    mesh.vertices = np.round(mesh.vertices, STEADY_DIGITS) + 0.0
     mesh.update_faces(mesh.nondegenerate_faces())
     mesh.update_faces(~_folded(mesh))
     mesh.remove_unreferenced_vertices()

@@ -25,7 +25,7 @@ from fpcad.wield.evaluate import contact_projector
 from fpcad.wield.path import WieldingPath
 
 GRIP = "grip.json"
-PART_STEPS = 8
+PART_STEPS = 24
 """About how many steps `make_hand` tells, for the bar."""
 
 
@@ -74,7 +74,8 @@ def _export_chosen(build: Build) -> int:
     write_json(build.folder / GRIP, {pose: asdict(told) for pose, told in margins.items()})
     with build.reporter.stage("parts", PART_STEPS) as bar:
         progress = partial(bar.advance, 1)
-        files = make_hand(build.spec, geometry, build.folder, progress, trajectories)
+        made = build.spec, geometry, build.folder
+        files = make_hand(*made, progress, trajectories, int(selected["id"]))
     return len(files) + len(build.spec.poses) + 1
 
 

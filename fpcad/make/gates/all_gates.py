@@ -13,7 +13,7 @@ from fpcad.make.gates.mesh import check_mesh
 from fpcad.make.gates.orientation import part_orientation
 from fpcad.make.gates.postures import hand_postures
 from fpcad.make.gates.printing import check_bed, check_overhang
-from fpcad.make.gates.reach import check_reach
+from fpcad.make.gates.reach import SOME, check_reach
 from fpcad.make.gates.solid import check_solid
 from fpcad.make.gates.wall import check_walls
 from fpcad.make.parts.assembly import Assembly, Progress
@@ -44,8 +44,12 @@ def gate_groups(
     assembly: Assembly,
     geometry: HandGeometry,
     trajectories: Mapping[str, Trajectory],
+    every: int = SOME,
 ) -> Iterator[Group]:
-    """The gates one after the other, each only computed when it is called."""
+    """The gates one after the other, each only computed when it is called.
+
+    `every` is that of :func:`check_reach`.
+    """
     yield "parts", lambda: [f for part in assembly.parts for f in check_part(spec, part)]
     bodies, hand = hand_bodies(assembly, geometry), spec.hand
     tools = tool_bodies(spec)
@@ -54,7 +58,7 @@ def gate_groups(
     for postures in hand_postures(hand, geometry, trajectories):
         yield postures.name, lambda p=postures: check_meetings(bodies, tools, geometry, p)
     for finger in geometry.fingers:
-        yield f"reach of {finger}", lambda f=finger: check_reach(bodies, geometry, hand, f)
+        yield f"reach of {finger}", lambda f=finger: check_reach(bodies, geometry, hand, f, every)
 
 
 def pass_gates(

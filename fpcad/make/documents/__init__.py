@@ -1,0 +1,1 @@
+"""What people and slicers read of a hand: print files, bill, guide, pictures. docs/assembly.md."""

@@ -1,0 +1,38 @@
+"""Parts as they lie on the printer's bed: parts/print/NAME.stl and NAME.3mf."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import trimesh
+
+from fpcad.make.bom import MATERIALS
+from fpcad.make.documents.stamp import Stamp
+from fpcad.make.documents.threemf import Item, threemf_bytes
+from fpcad.make.gates.orientation import part_orientation
+from fpcad.make.mesh import stl_bytes
+from fpcad.make.parts.part import Part
+from fpcad.spec.hardware import Print
+from fpcad.store import write_whole
+
+FOLDER = "print"
+
+
+def on_bed(part: Part, settings: Print) -> trimesh.Trimesh:
+    """The part's mesh [mm] laid as proposed: on z = 0, around the origin."""
+    return part.mesh.copy().apply_transform(part_orientation(part, settings).T_bed_part)
+
+
+def write_print_files(
+    parts: Sequence[Part], settings: Print, folder: Path, stamp: Stamp
+) -> list[Path]:
+    """Write each part, laid as it is to be printed, as STL and as 3MF."""
+    files = []
+    for part in parts:
+        mesh = on_bed(part, settings)
+        item = Item(part.name, part.material, MATERIALS[part.material], mesh)
+        place = folder / FOLDER / part.name
+        files.append(write_whole(place.with_suffix(".stl"), stamp.on_stl(stl_bytes(mesh))))
+        files.append(write_whole(place.with_suffix(".3mf"), threemf_bytes([item], stamp)))
+    return files
