@@ -15,6 +15,7 @@ from fpcad.run.messages import (
     AskLimits,
     Estop,
     Hello,
+    Home,
     Knot,
     NoSession,
     Ping,
@@ -36,8 +37,9 @@ from tests.run.proxy import damaged_port
 from tests.run.test_states import COMMANDS, HARMFUL, RESTING, knot
 from tests.run.virtual import bit_flips
 
-REACHABLE = (State.READY, State.ARMED, State.RUNNING, State.HOLD, State.ESTOP)
-"""Others take a fault or a boot; the bench of test_states.py puts controllers into those."""
+RESTING_STATES = (State.READY, State.ARMED, State.RUNNING, State.HOLD, State.ESTOP)
+HOMING_STATES = (State.IDLE, State.HOMING)
+"""BOOT and FAULT take a boot and a fault; the bench of test_states.py puts controllers into them."""
 
 
 @pytest.fixture(scope="module", params=[*SIMULATED_PORTS, *SETUPS])
@@ -74,19 +76,25 @@ def bench(port):
 
 
 @pytest.mark.real_time
-def test_all_reachable_pairs_have_their_answer(bench):
-    for state, command in product(REACHABLE, COMMANDS):
-        bench.into(state, RESTING)
-        answer = bench.ask(COMMANDS[command])
-        if command in (Ping, AskLimits, AskHoming, Hello):
-            assert not isinstance(answer, Refused | Ack | None), (state, command)
-        elif command is Start and state is State.ARMED and isinstance(answer, Refused):
-            assert answer.reason == Reason.START_TIME  # fixed, and the controller runs for long
-        elif (state, command) in NEXT:
-            assert isinstance(answer, Ack), (state, command)
-            assert answer.state == NEXT[state, command]
-        else:
-            assert isinstance(answer, Refused) and answer.state == state, (state, command)
+def test_pairs_of_states_at_rest_or_on_a_path_have_their_answer(bench):
+    for state, command in product(RESTING_STATES, COMMANDS):
+        if (state, command) != (State.READY, Home):
+            require_answer(bench, state, command)
+
+
+def require_answer(bench, state, command):
+    """That of the table, or that of a question, which every state answers."""
+    bench.into(state, RESTING)
+    answer = bench.ask(COMMANDS[command])
+    if command in (Ping, AskLimits, AskHoming, Hello):
+        assert not isinstance(answer, Refused | Ack | None), (state, command)
+    elif command is Start and state is State.ARMED and isinstance(answer, Refused):
+        assert answer.reason == Reason.START_TIME  # fixed, and the controller runs for long
+    elif (state, command) in NEXT:
+        assert isinstance(answer, Ack), (state, command, answer)
+        assert answer.state == NEXT[state, command]
+    else:
+        assert isinstance(answer, Refused) and answer.state == state, (state, command)
 
 
 def test_what_would_do_harm_is_refused(bench):
@@ -176,3 +184,11 @@ def test_knots_beyond_the_joints_are_malformed(bench):
     bench.into(State.ARMED, ())
     answer = bench.ask(Knot(0, *[thirteen] * 4))
     assert isinstance(answer, Refused) and answer.reason == 2
+
+
+@pytest.mark.real_time
+def test_pairs_of_a_search_for_zeros_have_their_answer(bench):
+    """The last one at each port, for the joints have moved afterwards."""
+    for state, command in [*product(HOMING_STATES, COMMANDS), (State.READY, Home)]:
+        require_answer(bench, state, command)
+    bench.into(State.READY, ())

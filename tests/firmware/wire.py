@@ -9,11 +9,13 @@ from fpcad.run.framing import Frame, FrameReader, encode_frame
 from fpcad.run.messages import (
     Ack,
     Arm,
+    Calibrate,
     Clear,
     Estop,
     Health,
     Hello,
     Hold,
+    Home,
     Ping,
     Pong,
     Start,
@@ -81,6 +83,12 @@ class WireBench:
         self.open()
         cleared = self.ask(Clear())
         assert isinstance(cleared, Ack), cleared
+        if cleared.state == State.IDLE:  # a search for zeros was broken off before
+            assert isinstance(self.ask(Calibrate((0,) * 12)), Ack)
+        if state in (State.IDLE, State.HOMING):
+            assert isinstance(self.ask(Home()), Ack)
+        if state is State.IDLE:
+            assert isinstance(self.ask(Hold()), Ack)
         if state in (State.ARMED, State.RUNNING):
             for message in (Arm(), *knots):
                 answer = self.ask(message)
