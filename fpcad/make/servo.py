@@ -24,6 +24,20 @@ class Servo:
     inertia_kgm2: float
     """Rotor and gears, as felt at the shaft."""
 
+    def behind_tendon(self, stiffness_nm_rad: float) -> Servo:
+        """The same servo with its tendon as one: softer, and as quick to follow its target.
+
+        Damping and inertia shrink with the stiffness, for what follows the target is the rotor,
+        which does not feel how soft the tendon is that it pulls.
+        """
+        share = stiffness_nm_rad / self.stiffness_nm_rad
+        return Servo(
+            self.torque_nm,
+            stiffness_nm_rad,
+            share * self.damping_nms_rad,
+            share * self.inertia_kgm2,
+        )
+
 
 def servo_of(row: Motor) -> Servo:
     """Estimate from stall torque and no-load speed.

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from fpcad.errors import MakeError
 from fpcad.make.grip import ContactLink
 from fpcad.make.preload.stiffness import servo_stiffness_nm_rad, tendon_stiffness_nmm_rad
+from fpcad.make.servo import servo_of
 from fpcad.make.trajectory import Trajectory
 from fpcad.model.transmission import hand_transmission
 from fpcad.simulate.engine import mujoco
 from fpcad.simulate.setting import Trial
+from fpcad.spec import catalogue
 from fpcad.spec.schema import Spec
 from fpcad.units import M_PER_MM, NM_PER_NMM
 
@@ -111,19 +113,20 @@ def _rotors(hand: Any, spec: Spec) -> Array:
     """Put a rotor behind each tendon: the motor turns it, and it pulls the joints by a spring."""
     mj, A = mujoco(), hand_transmission(spec.motors.transmission, len(hand.actuators) // 3)
     servo, tendon_nm_rad = servo_stiffness_nm_rad(spec), tendon_stiffness_nmm_rad(spec) * NM_PER_NMM
+    shaft = servo_of(catalogue.motor(spec.motors.type))
     for motor in list(hand.actuators):
         tendon = hand.tendon(motor.name)
         rotor = hand.worldbody.add_body(name=f"{motor.name} rotor", pos=[0.0, 0.0, -1.0])
         rotor.mass, rotor.inertia, rotor.explicitinertial = 1e-6, [1e-12] * 3, True
         axle = rotor.add_joint(name=f"{motor.name} rotor", type=mj.mjtJoint.mjJNT_HINGE)
-        axle.axis, axle.armature = [0.0, 0.0, 1.0], tendon.armature
+        axle.axis, axle.armature = [0.0, 0.0, 1.0], shaft.inertia_kgm2
         tendon.armature = 0.0
         tendon.wrap_joint(axle.name, -1.0)
         tendon.stiffness, tendon.springlength = [tendon_nm_rad, 0.0, 0.0], [0.0, 0.0]
         tendon.damping = [tendon_nm_rad * TENDON_LOSS_S, 0.0, 0.0]
         motor.trntype, motor.target = mj.mjtTrn.mjTRN_JOINT, axle.name
         motor.ctrllimited = False
-        motor.gainprm[0], motor.biasprm[1] = servo, -servo
+        motor.gainprm[0], motor.biasprm[1], motor.biasprm[2] = servo, -servo, -shaft.damping_nms_rad
     return A
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.make.inertia import Inertia
+from fpcad.make.preload.stiffness import hand_stiffness
 from fpcad.make.primitives import pose_along
 from fpcad.make.servo import Servo, servo_of
 from fpcad.make.trajectory import Trajectory
@@ -23,7 +24,7 @@ from fpcad.model.transmission import (
 from fpcad.spec.catalogue import motor
 from fpcad.spec.schema import Spec
 from fpcad.spec.templates import TEMPLATES
-from fpcad.units import M_PER_MM, RAD_PER_DEG
+from fpcad.units import M_PER_MM, NM_PER_NMM, RAD_PER_DEG
 
 Array = NDArray[np.float64]
 
@@ -126,6 +127,7 @@ class Robot:
     A: Array
     """(n_motors, n_joints): motor angles are A times joint angles."""
     servo: Servo
+    """A motor with its tendon."""
     friction: float
     postures: tuple[Posture, ...]
     tool: Stick
@@ -169,7 +171,7 @@ def describe(
         joints=tuple(joints),
         motors=tuple(f"{finger}_{m}" for finger in names.fingers for m in MOTORS_OF_A_FINGER),
         A=A,
-        servo=servo_of(row),
+        servo=servo_of(row).behind_tendon(hand_stiffness(spec).motor_nmm_rad * NM_PER_NMM),
         friction=spec.statics.friction,
         postures=tuple(_posture(name, trajectories[name]) for name in trajectories),
         tool=_stick(spec),

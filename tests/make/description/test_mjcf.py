@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from fpcad.make.servo import servo_of
+from fpcad.make.preload.stiffness import hand_stiffness
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.spec.catalogue import motor
 from tests.make.description.engine import mujoco
@@ -56,13 +56,12 @@ def test_motors_give_no_more_than_their_continuous_torque(hand):
     assert data.actuator_force == pytest.approx(row.continuous_torque_nm)
 
 
-def test_motors_fall_short_by_their_stiffness(hand):
+def test_motors_are_as_stiff_as_the_grip_takes_servo_and_tendon_to_be(hand):
     data = mujoco.MjData(hand)
     data.ctrl[:] = 0.01
     mujoco.mj_forward(hand, data)
-    assert data.actuator_force == pytest.approx(
-        0.01 * servo_of(motor(CLAY.motors.type)).stiffness_nm_rad
-    )
+    in_series = 1e-3 * hand_stiffness(CLAY).motor_nmm_rad
+    assert data.actuator_force == pytest.approx(0.01 * in_series)
 
 
 def test_every_pose_is_a_keyframe_of_hand_and_scene(hand, scene):
