@@ -1,62 +1,87 @@
-"""From a build folder to a run: which files belong together, and a bar while it lasts."""
+"""From a build folder to a run: which files and which driver belong together."""
 
 from __future__ import annotations
 
 import math
+import select
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+import typer
 
 from fpcad.commands.console import console
+from fpcad.commands.live import live_joints
 from fpcad.errors import StoreError
 from fpcad.run import report as runs
-from fpcad.run.limits import JointLimits, read_limits
-from fpcad.run.run_trajectory import DryRun, dry_run, run_trajectory
-from fpcad.spec import Spec
-from fpcad.units import RAD_PER_DEG
+from fpcad.run.calibration import Calibration, calibration_file, read_calibration
+from fpcad.run.drivers.choose import (
+    DRIVERS,
+    Pace,
+    guards_of,
+    register_bus,
+    simulated_bus,
+    simulated_map,
+)
+from fpcad.run.errors import CalibrationError
+from fpcad.run.hand_files import HandFiles
+from fpcad.run.motor_map import MotorMap
+from fpcad.run.plan import planned
+from fpcad.run.preflight import preflight
+from fpcad.run.run_trajectory import (
+    SIMULATED_PORTS,
+    DryRun,
+    RunOptions,
+    clock_rate,
+    dry_run,
+    run_on_servos,
+    run_trajectory,
+)
 
 
 def drive(
-    spec: Spec,
-    folder: Path,
+    hand: HandFiles,
     pose: str,
-    port: str,
-    speed: float,
-    loops: int,
-    move_to_start: bool,
-    clear: bool,
-    check_only: bool,
-    log: Path | None,
-) -> runs.RunReport | DryRun:
-    """Run one pose's trajectory of the hand in a build folder, or only check it."""
-    trajectory, limits = trajectory_file(folder, pose), hand_limits(spec, folder)
-    if check_only:
-        return dry_run(trajectory, limits, speed=speed, loops=loops)
-    columns = [
-        TextColumn("{task.description:<10}"),
-        BarColumn(32),
-        TextColumn("{task.completed:.1f}/{task.total:.1f} s"),
-        TimeRemainingColumn(),
-        TextColumn("[dim]{task.fields[note]}"),
-    ]
-    with Progress(*columns, console=console) as progress:
-        task = progress.add_task(pose, total=1.0, note="connecting")
+    driver: str,
+    port: str | None,
+    calibration: Path,
+    options: RunOptions,
+) -> runs.RunReport:
+    """Run one pose's trajectory of the hand; checked whole before a port is opened."""
+    trajectory = trajectory_file(hand.folder, pose)
+    check(hand, trajectory, options)
+    if options.log is None:
+        options = replace(options, log=log_file(hand.folder, pose))
+    with live_joints(pose, hand.limits.names) as show:
 
-        def show(at: runs.Progress) -> None:
+        def progress(at: runs.Progress) -> None:
             note = f"{at.state}, error {math.degrees(at.error_rad):.2f} deg, {at.resends} resends"
-            progress.update(task, completed=at.path_s, total=at.total_s, note=note)
+            show(at.path_s, at.total_s, note, at.sample)
 
-        return run_trajectory(
-            trajectory,
-            limits,
-            port,
-            speed=speed,
-            loops=loops,
-            move_to_start=move_to_start,
-            clear=clear,
-            log=log,
-            on_progress=show,
+        pace = pace_of(driver, port)
+        told = replace(options, on_progress=progress, motor_names=hand.motors)
+        if driver == "fw":
+            zeros = kept_zeros(hand, calibration, needed_port(driver, port))
+            return run_trajectory(
+                trajectory, hand.limits, needed_port(driver, port), zeros_rad=zeros, **vars(told)
+            )
+        if driver == "sim":
+            start = planned(trajectory, hand.limits, 1.0, 1).position[0]
+            bus, motors = simulated_bus(hand, start, pace), simulated_map(hand)
+        else:
+            bus = register_bus(driver, hand, needed_port(driver, port))
+            motors = kept_map(hand, calibration, driver)
+        return run_on_servos(
+            trajectory, hand.limits, bus, motors, guards_of(hand, bus), told, pace.clock, pace.sleep
         )
+
+
+def check(hand: HandFiles, trajectory: Path, options: RunOptions) -> DryRun:
+    """All that can be known without a port: limits of joints and motors, torque, collision."""
+    preflight(hand, planned(trajectory, hand.limits, options.speed, 1))
+    return dry_run(trajectory, hand.limits, speed=options.speed, loops=options.loops)
 
 
 def trajectory_file(folder: Path, pose: str) -> Path:
@@ -69,8 +94,70 @@ def trajectory_file(folder: Path, pose: str) -> Path:
     return file
 
 
-def hand_limits(spec: Spec, folder: Path) -> JointLimits:
-    """Limits of the built hand: the URDF's, and the spec's acceleration."""
-    urdf = folder / "hand" / "urdf" / f"{spec.name}.urdf"
-    acceleration = spec.motion.joint_acceleration_deg_s2 * RAD_PER_DEG
-    return read_limits(urdf, acceleration, folder / "hand" / "transmission.yaml")
+def log_file(folder: Path, pose: str) -> Path:
+    """Where a run leaves its table: `runs/POSE-TIME.parquet` in the build folder."""
+    return folder / "runs" / f"{pose}-{datetime.now():%Y%m%d-%H%M%S}.parquet"
+
+
+def known_driver(name: str) -> str:
+    """The name of a driver, checked as an option's value."""
+    if name not in DRIVERS:
+        raise typer.BadParameter(f"{name} is none of {', '.join(DRIVERS)}")
+    return name
+
+
+def needed_port(driver: str, port: str | None) -> str:
+    """A port, which all drivers but simulated motors need."""
+    if port is None:
+        raise typer.BadParameter(f"the driver {driver} needs --port; `fpcad ports` lists them")
+    return port
+
+
+def pace_of(driver: str, port: str | None) -> Pace:
+    """Real time, but for simulated motors on a `--port` such as sim:20, which are hurried."""
+    return Pace(clock_rate(port)) if driver == "sim" and port is not None else Pace()
+
+
+def kept_map(hand: HandFiles, file: Path, driver: str) -> MotorMap:
+    """Joints to motors as measured on the hand; servos are not moved without that."""
+    return hand.motor_map(read_calibration(file, hand.motors, hand.limits, driver))
+
+
+def kept_zeros(hand: HandFiles, file: Path, port: str):
+    """Zeros for a controller that does not know them, if there are any; (n,) or None."""
+    if port.partition(":")[0] in SIMULATED_PORTS or not file.is_file():
+        return None
+    kept = read_calibration(file, hand.motors, hand.limits, "fw")
+    return kept.zero_rad
+
+
+def kept_calibration(hand: HandFiles, file: Path, driver: str) -> Calibration | None:
+    """What was measured before, where it still fits."""
+    try:
+        return read_calibration(file, hand.motors, hand.limits, driver)
+    except CalibrationError:
+        return None
+
+
+def calibration_of(design: Path, hand: HandFiles, driver: str) -> Path:
+    """File of the hand's calibration; simulated motors have one of their own, in the build."""
+    if driver == "sim":
+        return hand.folder / "runs" / "calibration-sim.yaml"
+    return calibration_file(design, hand.spec.name)
+
+
+def enter_pressed(question: str) -> Callable[[], bool]:
+    """Ask once; true when somebody has pressed Enter, without waiting for it."""
+    asked = False
+
+    def pressed() -> bool:
+        nonlocal asked
+        if not asked:
+            console.print(question)
+            asked = True
+        ready, _, _ = select.select([sys.stdin], [], [], 0)
+        if ready:
+            sys.stdin.readline()
+        return bool(ready)
+
+    return pressed

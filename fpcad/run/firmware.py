@@ -5,12 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from fpcad.run.driver import Played, Sample, Watch
+from fpcad.run.driver import Array, Played, Sample, Watch
 from fpcad.run.errors import ControllerSilent, HeldByUser, NotReady
 from fpcad.run.knots import to_wire
-from fpcad.run.limits import JointLimits
+from fpcad.run.limits import JointLimits, to_counts
 from fpcad.run.link import Clock
-from fpcad.run.messages import Cause, Clear, Health, Refused, State, Telemetry
+from fpcad.run.messages import Calibrate, Cause, Clear, Health, Reason, Refused, State, Telemetry
 from fpcad.run.port import Transport
 from fpcad.run.quintic import Knots
 from fpcad.run.session import HANDSHAKE_S, handshake
@@ -27,7 +27,7 @@ _ADVICE = {
 
 
 class FirmwareDriver:
-    """A session with a controller that fits `limits`."""
+    """A session with a controller that fits `limits`; `zeros_rad` (n,): its motors', if kept."""
 
     def __init__(
         self,
@@ -35,18 +35,26 @@ class FirmwareDriver:
         limits: JointLimits,
         clock: Clock = time.monotonic,
         patience_s: float = HANDSHAKE_S,
+        zeros_rad: Array | None = None,
     ) -> None:
         self._limits = limits
+        self._zeros = zeros_rad
         self._health: Health | None = None
         self._link, self._welcome = handshake(transport, limits, clock, patience_s)
         build = self._welcome.build.rstrip(b"\0").decode("ascii", "replace")
         self.identity = f"{build}, protocol {self._welcome.protocol}"
 
     def ready(self, *, clear: bool) -> Sample:
-        """Where the joints are; raises :class:`NotReady` in any state but READY."""
+        """Where the joints are; raises :class:`NotReady` in any state but READY.
+
+        A controller that does not know its motors' zeros is told those that were kept.
+        """
         now = self._telemetry()
         if clear and now.state in (State.HOLD, State.FAULT, State.ESTOP):
             self._link.send(Clear())
+            now = self._telemetry(until_acknowledged=True)
+        if now.state == State.IDLE and self._zeros is not None:
+            self._link.send(Calibrate(to_counts(self._zeros)))
             now = self._telemetry(until_acknowledged=True)
         if now.state != State.READY:
             raise self._not_ready(now)
@@ -79,6 +87,14 @@ class FirmwareDriver:
         advice = _ADVICE.get(state, "wait until it is")
         return NotReady(f"the controller is in {state.name}{why}, not READY: {advice}")
 
+    def _refused(self, msg: Refused) -> NotReady:
+        if Reason(msg.reason) is Reason.IMPLAUSIBLE:
+            joint = self._limits.names[msg.joint]
+            return NotReady(
+                f"the kept zeros would put {joint} beyond its limits; home the hand with `fpcad home`"
+            )
+        return NotReady("the controller cannot be cleared while its joints move")
+
     def _hear_health(self) -> None:
         """Its first report tells the preload that the motors still hold."""
         deadline = self._link.clock() + _ANSWER_S
@@ -91,7 +107,7 @@ class FirmwareDriver:
             latest = None
             for msg in self._link.poll():
                 if isinstance(msg, Refused):
-                    raise NotReady("the controller cannot be cleared while its joints move")
+                    raise self._refused(msg)
                 if isinstance(msg, Health):
                     self._health = msg
                 pending = until_acknowledged and self._link.unacknowledged()

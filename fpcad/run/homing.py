@@ -28,6 +28,7 @@ HOMING_SHARE = 0.1
 """Part of a motor's torque that presses on an end stop."""
 _SPEED_RAD_S = 0.6
 _PERIOD_S = 0.01
+_WATCHDOG_S = 0.5
 _STALL_LAG_RAD = 0.08
 """Lag of the joint behind its goal, as its motors tell, that counts as an end."""
 _STALL_CYCLES = 15
@@ -78,6 +79,7 @@ class Homing:
         """Search all joints; torque stays on at the end, with all that the motors can."""
         self._bus.torque(True)
         self._bus.limit_torque(HOMING_SHARE)
+        self._bus.watchdog(_WATCHDOG_S)
         try:
             ends = np.array([self._both_ends(j) for j in range(len(self._goal))])
         except BaseException:

@@ -21,6 +21,7 @@ SHARES = (0.1, 0.3)
 _BEYOND_RAD = 1.0
 """How far a goal lies beyond what blocks: more than the motor can stretch its tendon."""
 _APPROACH_RAD_S = 1.0
+_NOD_RAD = 0.5
 _SETTLE_S = 0.4
 _PERIOD_S = 0.01
 _SAMPLES = 10
@@ -68,7 +69,7 @@ class PullTest:
         found = np.full(len(self._bus.names), np.nan)
         for joint in range(len(self._map.joints)):
             moving = np.flatnonzero(np.abs(self._map.transmission.matrix[:, joint]) > 1e-9)
-            mine = [m for m in moving if np.isnan(found[m])]
+            mine = [int(m) for m in moving if np.isnan(found[m])]
             if not mine:
                 continue
             weak, strong = self._press(joint)
@@ -95,6 +96,14 @@ class PullTest:
         stiffness = 2 * (torque[1] - torque[0]) / stretch
         slack = travel[0] - 2 * torque[0] / stiffness if stiffness > 0 else travel[0]
         return Slack(name, max(float(slack), 0.0), float(stiffness))
+
+    def nod(self, joint: int) -> None:
+        """Turn one joint a little way up and back, for eyes that watch."""
+        rest = self._map.to_joints(self._bus.read_state().position_rad)
+        bent = rest.copy()
+        bent[joint] = min(rest[joint] + _NOD_RAD, self._limits.upper_rad[joint])
+        for goal in (bent, rest):
+            self._go(self._map.to_bus(goal))
 
     def _leading(self, joint: int, motors: list[int]) -> list[int]:
         """Of motors that turn with a joint, those that pull it: the strongest coupled ones."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -10,13 +11,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fpcad.run.bus import MotorBus
+from fpcad.run.bus import ServoBus
 from fpcad.run.driver import Driver, Played, Sample, Watch
 from fpcad.run.errors import PortMissing
 from fpcad.run.firmware import FirmwareDriver
 from fpcad.run.interrupt import counted_interrupts
 from fpcad.run.knots import to_wire
 from fpcad.run.limits import JointLimits
+from fpcad.run.link import Clock
 from fpcad.run.motor_map import MotorMap
 from fpcad.run.plan import closed, from_present, planned, start_of
 from fpcad.run.port import Transport, open_port
@@ -82,6 +84,7 @@ def run_trajectory(
     port: str,
     *,
     patience_s: float = HANDSHAKE_S,
+    zeros_rad: Array | None = None,
     **options: object,
 ) -> RunReport:
     """Stream a trajectory to the controller at `port` and wait until it has been followed.
@@ -94,6 +97,7 @@ def run_trajectory(
         port: a serial port; `sim` starts a simulated controller, `fw` the firmware itself with
             simulated motors, `sim:20` or `fw:20` the same 20 times as fast as real time.
         patience_s: how long to wait for a controller's first answer [s].
+        zeros_rad: the motors' zeros (n,) as kept, for a controller that does not know them.
         options: those of :class:`RunOptions`.
 
     Raises:
@@ -103,23 +107,25 @@ def run_trajectory(
     knots = planned(trajectory_file, limits, wanted.speed, wanted.loops)
     posture = _nearest_to_straight(limits) if wanted.move_to_start else knots.position[0]
     with controller_line(port, limits, posture) as transport:
-        driver = FirmwareDriver(transport, limits, patience_s=patience_s)
+        driver = FirmwareDriver(transport, limits, patience_s=patience_s, zeros_rad=zeros_rad)
         return perform(driver, knots, limits, wanted)
 
 
 def run_on_servos(
     trajectory_file: Path,
     limits: JointLimits,
-    bus: MotorBus,
+    bus: ServoBus,
     motors: MotorMap,
     guards: ServoGuards,
     options: RunOptions,
+    clock: Clock = time.monotonic,
+    sleep: Callable[[float], None] = time.sleep,
 ) -> RunReport:
     """The same with the motors of a servo bus, which this opens and closes."""
     knots = planned(trajectory_file, limits, options.speed, options.loops)
     with closing(bus):
         bus.open()
-        driver = ServoDriver(bus, motors, limits, guards)
+        driver = ServoDriver(bus, motors, limits, guards, clock, sleep)
         return perform(driver, knots, limits, options)
 
 
@@ -229,13 +235,14 @@ def controller_line(port: str, limits: JointLimits, posture: Array) -> Iterator[
         with closing(open_port(port)) as transport:
             yield transport
         return
-    rate = _clock_rate(port)
+    rate = clock_rate(port)
     with start(limits, posture, clock_rate=rate) as device:  # noqa: SIM117
         with closing(open_port(device.port)) as transport:
             yield transport
 
 
-def _clock_rate(port: str) -> float:
+def clock_rate(port: str) -> float:
+    """How many times as fast as real time a simulated port such as `sim:20` is."""
     name, _, text = port.partition(":")
     try:
         rate = float(text or "1")

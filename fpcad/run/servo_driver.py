@@ -15,7 +15,7 @@ from typing import NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from fpcad.run.bus import BusState, MotorBus
+from fpcad.run.bus import BusState, ServoBus
 from fpcad.run.driver import Played, Sample, Watch
 from fpcad.run.errors import (
     CommandRefused,
@@ -59,7 +59,7 @@ class ServoDriver:
 
     def __init__(
         self,
-        bus: MotorBus,
+        bus: ServoBus,
         motors: MotorMap,
         limits: JointLimits,
         guards: ServoGuards,
@@ -80,6 +80,7 @@ class ServoDriver:
         state = self._bus.read_state()
         self._map = self._map.settled(state.position_rad, self._limits)
         self._bus.torque(True)
+        self._bus.limit_torque(1.0)  # homing may have left less
         self._bus.watchdog(WATCHDOG_S)
         return self._sample(self._bus.read_state(), None, "READY")
 

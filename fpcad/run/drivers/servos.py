@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,6 +95,11 @@ class ServoRegisterBus(ABC):
         except BaseException:
             self.close()
             raise
+
+    def connect_only(self) -> Self:
+        """Open the port whoever is there: to look for servos and to number them."""
+        self._registers = self._connect()
+        return self
 
     def identify(self) -> tuple[Identity, ...]:
         found = [self._identity(name, n) for name, n in zip(self.names, self.numbers, strict=True)]
