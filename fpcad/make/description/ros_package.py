@@ -10,7 +10,7 @@ from pathlib import Path
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 
 from fpcad.make.description.markup import number
-from fpcad.make.description.motion_message import joint_trajectory_yaml
+from fpcad.make.description.motion_message import messages
 from fpcad.make.description.robot import BASE_LINK, Robot
 from fpcad.make.description.srdf import ALL_JOINTS, srdf_text
 from fpcad.make.description.urdf import SOFT_LIMIT_RATE, velocity_gain
@@ -56,7 +56,11 @@ def write_ros_package(
         f"urdf/{name}.ros2_control.xacro": control_macro(robot),
         f"config/{name}.srdf": srdf_text(robot),
         **{target: _filled(template, robot) for target, template in TEMPLATES.items()},
-        **{f"trajectories/{p}.yaml": joint_trajectory_yaml(t) for p, t in trajectories.items()},
+        **{
+            f"trajectories/{file}": text
+            for pose, trajectory in trajectories.items()
+            for file, text in messages(pose, trajectory).items()
+        },
     }
     written = [write_whole(package / target, text) for target, text in texts.items()]
     used = dict.fromkeys(mesh for link in robot.links for mesh, _ in link.body.visuals)

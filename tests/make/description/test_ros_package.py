@@ -176,6 +176,16 @@ def test_motions_have_the_shape_of_the_message(package, pose):
         assert len(point["velocities"]) == len(point["accelerations"]) == len(JOINTS)
 
 
+def test_commands_that_grip_are_a_message_of_their_own(package):
+    names = {file.name for file in (package / "trajectories").iterdir()}
+    assert names == {"nod.yaml", "tight.yaml", "tight.preload.yaml"}
+    message = YAML(typ="safe").load(package / "trajectories" / "tight.preload.yaml")
+    expected = TRAJECTORIES["tight"].position_preload_rad
+    assert expected is not None
+    assert [point["positions"] for point in message["points"]] == expected.tolist()
+    assert all(point["velocities"] == point["accelerations"] == [] for point in message["points"])
+
+
 def test_launch_files_are_python_and_start_what_the_package_depends_on(package):
     needed = {e.text for e in ET.parse(package / "package.xml").getroot().iter("exec_depend")}
     for file in (package / "launch").iterdir():
