@@ -1,14 +1,22 @@
 """Homing on simulated motors and tendons: what it finds, and how it must fail."""
 
+import time
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fpcad.run.drivers.sim import SimBus
 from fpcad.run.errors import HeldByUser, HomingError
 from fpcad.run.homing import Homing
-from tests.run.drivers.rigs import MOTORS, motor_map, mounting, tendon_hand
+from fpcad.run.motor_map import MotorMap, Mounting
+from fpcad.run.sim.tendon_hand import TendonHand
+from fpcad.run.transmission import Transmission
+from tests.run.drivers.rigs import GEARS, MOTORS, SERVOS, motor_map, mounting, tendon_hand
 from tests.run.drivers.test_servo_driver import Time
-from tests.run.fixtures import hand_limits
+from tests.run.fixtures import NAMES, hand_limits
+
+COLUMNS = ("lower_rad", "upper_rad", "velocity_rad_s", "acceleration_rad_s2")
 
 
 def homing(mounted=None, assumed=None, hand=None, limits=None, **changes):
@@ -78,3 +86,29 @@ def test_ctrl_c_holds_and_twice_lets_go():
         with pytest.raises(HeldByUser, match="zeros are unknown"):
             search.run()
         assert bus.read_state().torque_on is (wanted == 1)
+
+
+@pytest.mark.parametrize("maker", SERVOS)
+def test_one_finger_is_homed_through_the_makers_sdk(maker):
+    """Three servos behind a pseudo terminal, six times as fast as real ones."""
+    limits = hand_limits(
+        names=NAMES[:3], **{key: getattr(hand_limits(), key)[:3] for key in COLUMNS}
+    )
+    gears = Transmission(GEARS.matrix[:3, :3], np.zeros(3))
+    there = Mounting(np.array([-0.9, -0.2, -0.4]), np.ones(3), np.ones(3))
+    bench, bus, model = SERVOS[maker]
+    pace, numbers = 6.0, (1, 2, 3)
+    with bench(TendonHand(gears, limits, np.array([0.4, 0.1, 0.6])), there, numbers) as servos:
+        servos.pace = pace
+        line = bus(MOTORS[:3], numbers, model, servos.port, 1_000_000)
+        line.open()
+        known = MotorMap(NAMES[:3], MOTORS[:3], gears, replace(there, zero_rad=np.zeros(3)))
+        found = Homing(
+            line,
+            known,
+            limits,
+            clock=lambda: pace * time.monotonic(),
+            sleep=lambda seconds: time.sleep(seconds / pace),
+        ).run()
+        line.close()
+    assert np.abs(found.motors.mounting.zero_rad - there.zero_rad).max() < np.radians(1.5)

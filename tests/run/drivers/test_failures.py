@@ -106,7 +106,9 @@ def test_a_reply_that_trips_the_sdk_s_parser_is_only_unreadable(maker, bench):
     bus = servo_bus(maker, bench.port)
     bus.open()
     bus.read_state()
-    noise = iter([bytes([0xFF, 0xFF, 0xFD, 0, 1, 4, 0, 0x55, 0]) + bytes(40), b"\xff\xff\x01\x00" * 9])
+    noise = iter(
+        [bytes([0xFF, 0xFF, 0xFD, 0, 1, 4, 0, 0x55, 0]) + bytes(40), b"\xff\xff\x01\x00" * 9]
+    )
     bench.faults.to_host = lambda data: next(noise, data)
     for _ in range(4):
         state = bus.read_state()
@@ -121,7 +123,7 @@ def test_a_servo_gets_a_new_id(maker, bench):
     assert 40 in bench.memory and 12 not in bench.memory
     with pytest.raises(ServoMismatch, match="id 2 is taken"):
         bus.assign(1, 2)
-    with pytest.raises(ServoSilent, match="id 12 .*does not answer"):
+    with pytest.raises(ServoSilent, match=r"id 12 .*does not answer"):
         bus.assign(12, 13)
     assert bus.scan(range(39, 42)) == {40: bus._wanted.name}
     bus.close()

@@ -41,6 +41,7 @@ class ServoBench(ABC):
     def __init__(self, hand: TendonHand, mounting: Mounting, numbers: tuple[int, ...]) -> None:
         self.hand, self.mounting = hand, mounting
         self.faults = Faults()
+        self.pace = 1.0
         self.memory = {n: bytearray(256) for n in numbers}
         self._place = {n: i for i, n in enumerate(numbers)}
         self._at_s = time.monotonic()
@@ -99,7 +100,7 @@ class ServoBench(ABC):
 
     def pass_time(self) -> None:
         now = time.monotonic()
-        seconds, self._at_s = now - self._at_s, now
+        seconds, self._at_s = self.pace * (now - self._at_s), now
         numbers = sorted(self._place, key=lambda n: self._place[n])
         goal = np.array([self.goal_counts(n) - 2048 for n in numbers]) * COUNT_RAD
         on = np.array([self.torque_on(n) and n not in self.faults.dead for n in numbers])
