@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from fpcad.commands import descriptions, look, making, motors, specs, stages, wire
+from fpcad.commands import descriptions, look, making, motors, physics, specs, stages, wire
 from fpcad.commands.console import console, start_logging
 from fpcad.errors import FpcadError
 
@@ -27,7 +27,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _room in (specs, stages, look, making, descriptions, wire, motors):
+for _room in (specs, stages, look, making, descriptions, wire, motors, physics):
     app.add_typer(_room.verbs)
 
 INTERRUPTED = 130

@@ -15,6 +15,9 @@ from fpcad.simulate.setting import CONTROL_PERIOD_S
 
 Array = NDArray[np.float64]
 
+LOST_M = 0.03
+"""Distance of the tool from its planned place beyond which it is lost."""
+
 
 @dataclass(frozen=True)
 class Record:
@@ -64,17 +67,13 @@ def roll(scene: Scene, commands: Commands, joints_rad: Array) -> Record:
     return watch.record(commands)
 
 
-LOST_M = 0.03
-"""Distance of the tool from its planned place beyond which it is lost."""
-
-
 class _Watch:
     """Collects what is seen at each tick."""
 
     def __init__(self, scene: Scene, data: Any) -> None:
         self._scene, self._data, self._mj = scene, data, mujoco()
         self._rows: list[tuple[Array, ...]] = []
-        self._force, self._velocity = np.zeros(6), np.zeros((2, 6))
+        self._force, self._velocity = np.zeros(6), np.zeros(6)
 
     def see(self) -> None:
         """Note the state after a tick."""
@@ -134,10 +133,16 @@ class _Watch:
         velocities = []
         for body in (scene.tool_body, scene.model.geom_bodyid[finger]):
             mj.mj_objectVelocity(
-                scene.model, self._data, mj.mjtObj.mjOBJ_BODY, body, self._velocity[0], 0
+                scene.model, self._data, mj.mjtObj.mjOBJ_BODY, body, self._velocity, 0
             )
-            turning, moving = self._velocity[0, :3], self._velocity[0, 3:]
-            velocities.append(moving + np.cross(turning, contact.pos - self._data.xpos[body]))
+            arm = contact.pos - self._data.xpos[body]
+            velocities.append(self._velocity[3:] + _cross(self._velocity[:3], arm))
         relative = velocities[1] - velocities[0]
         normal = contact.frame[:3]
         return 1000.0 * float(np.linalg.norm(relative - normal * (normal @ relative)))
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Product of two vectors (3,), ten times as fast as NumPy's for many."""
+    (a0, a1, a2), (b0, b1, b2) = a.tolist(), b.tolist()
+    return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])

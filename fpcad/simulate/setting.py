@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-TIME_STEP_S = 1e-3
+TIME_STEP_S = 5e-4
 CONTROL_PERIOD_S = 4e-3
 """Period at which motors get targets, as the firmware gives them."""
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import osqp
 from numpy.typing import NDArray
-from scipy import sparse
 
 from fpcad.errors import MakeError
 from fpcad.make.preload.touch import FORCE_AXES, Touch
+from fpcad.solve.qp import UNBOUNDED, QuadraticProgram, solve_daqp
 
 Array = NDArray[np.float64]
 
@@ -18,12 +17,13 @@ FACETS = 16
 """Edges of the pyramid inside each friction cone; it holds 98 % of the cone."""
 SLACK_PRICE = 1e3
 """Price [N] of a newton beyond the planned share of the cone: paid only where nothing else balances."""
+SLACK_WEIGHT = 1e-2
+"""Makes the program strictly convex in the slacks too."""
 TOLERANCE_N = 1e-3
-MAX_ITERATIONS = 200_000
+"""Largest change of a force in a sweep with which the sweeps are done."""
+MAX_SWEEPS = 60
 LEVER_MM = 30.0
 """Moments count in newtons at this lever, so that the program's rows are of one size."""
-TORQUE_UNIT_NMM = 30.0
-"""Motor torques count in newtons at this lever, for the same reason."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,9 @@ def grip_forces(touch: Touch, motor_torque: Array, demand: GripDemand) -> Array:
     least normal forces, the motors' torque and the planned share of the friction cone. Where the
     path leaves no balance within that share, forces exceed it by as little as can be.
 
+    Neighbours share no constraint, so the states' programs are solved in turn, each with its
+    neighbours held, until nothing changes: block descent, which ends at the whole's minimum.
+
     Args:
         touch: the contacts of N states.
         motor_torque: (N, n_motors, 3n) motor torques [N mm] for unit forces.
@@ -59,22 +62,20 @@ def grip_forces(touch: Touch, motor_torque: Array, demand: GripDemand) -> Array:
     Raises:
         MakeError: no forces balance within the motors' torque.
     """
-    states, contacts = touch.points_mm.shape[:2]
-    P, rows, low, high = _program(touch, motor_torque, demand)
-    price = np.tile(np.repeat([0.0, SLACK_PRICE], [FORCE_AXES * contacts, contacts]), states)
-    solver = osqp.OSQP()
-    solver.setup(
-        P, price, rows, low, high,
-        eps_abs=TOLERANCE_N, eps_rel=0.0, max_iter=MAX_ITERATIONS, polishing=True, verbose=False,
-    )  # fmt: skip
-    found = solver.solve()
-    if found.info.status != "solved":
-        raise MakeError(
-            f"no forces grip the tool within the motors' torque ({found.info.status}): lower "
-            "grip.min_normal_force_n, or take stronger motors"
-        )
-    forces = found.x.reshape(states, -1)[:, : FORCE_AXES * contacts]
-    return forces - balance_residual(touch, forces, demand.load)
+    rows, low, high = _rows(touch, motor_torque, demand)
+    pull = np.concatenate([[0.0], (demand.smoothing_rad / demand.spacing_rad) ** 2, [0.0]])
+    size = touch.grasp_map.shape[2]
+    forces = np.zeros((len(rows), size))
+    for sweep in range(MAX_SWEEPS):
+        before = forces.copy()
+        for k in range(len(rows)):
+            # In the first sweep the next state is not known yet, so it does not pull.
+            pulls = pull[k], pull[k + 1] if sweep else 0.0
+            aim = pulls[0] * forces[k - 1] + pulls[1] * forces[(k + 1) % len(rows)]
+            forces[k] = _state_forces(1.0 + sum(pulls), aim, rows[k], low[k], high[k], demand, k)
+        if np.abs(forces - before).max() < TOLERANCE_N:
+            break
+    return forces
 
 
 def balance_residual(touch: Touch, forces: Array, load: Array) -> Array:
@@ -84,44 +85,60 @@ def balance_residual(touch: Touch, forces: Array, load: Array) -> Array:
     return np.einsum("kij,kj->ki", np.linalg.pinv(grasp), missing)
 
 
-def _program(
-    touch: Touch, motor_torque: Array, demand: GripDemand
-) -> tuple[sparse.csc_matrix, sparse.csc_matrix, Array, Array]:
-    """Hessian, rows and their bounds; variables are each state's forces, then its slacks."""
+def _state_forces(
+    weight: float, aim: Array, rows: Array, low: Array, high: Array, demand: GripDemand, k: int
+) -> Array:
+    """Forces (3n,) of one state; its variables are forces, then what each exceeds its cone by."""
+    size, contacts = len(aim), len(aim) // FORCE_AXES
+    least, most = np.full(size, -UNBOUNDED), np.full(size, UNBOUNDED)
+    least[::FORCE_AXES] = demand.least_normal_n[k]
+    most[::FORCE_AXES] = np.minimum(demand.most_normal_n[k], UNBOUNDED)
+    program = QuadraticProgram(
+        H=np.diag(np.repeat([weight, SLACK_WEIGHT], [size, contacts])),
+        f=np.concatenate([-aim, np.full(contacts, SLACK_PRICE)]),
+        lower=np.concatenate([least, np.zeros(contacts)]),
+        upper=np.concatenate([most, np.full(contacts, UNBOUNDED)]),
+        A=rows,
+        row_lower=low,
+        row_upper=high,
+    )
+    solution = solve_daqp(program)
+    if solution is None:
+        raise MakeError(
+            "no forces grip the tool within the motors' torque: lower grip.min_normal_force_n, or "
+            "take stronger motors"
+        )
+    return solution.x[:size]
+
+
+def _rows(touch: Touch, motor_torque: Array, demand: GripDemand) -> tuple[Array, Array, Array]:
+    """Rows (N, m, 4n) of balance, cones and motors, with their bounds (N, m) each."""
     states, contacts = touch.points_mm.shape[:2]
-    forces = FORCE_AXES * contacts
-    grasp = touch.grasp_map / _wrench_units()
-    motor = motor_torque / TORQUE_UNIT_NMM
-    blocks = [
-        sparse.csc_matrix(np.vstack([_balance, _contact_rows(contacts, demand.friction), _motor]))
-        for _balance, _motor in zip(_padded(grasp, contacts), _padded(motor, contacts), strict=True)
-    ]
-    limit = np.full(motor.shape[1], demand.motor_limit_nmm / TORQUE_UNIT_NMM)
-    normal = np.repeat(demand.least_normal_n[:, None], contacts, axis=1)
-    most = np.repeat(demand.most_normal_n[:, None], contacts, axis=1)
-    low = np.concatenate([np.zeros(contacts), np.full(contacts * FACETS, -np.inf), -limit])
-    high = np.concatenate([np.full(contacts, np.inf), np.zeros(contacts * FACETS), limit])
-    balance = -demand.load / _wrench_units()[:, 0]
-    lows = np.hstack([balance, normal, np.tile(low, (states, 1))]).ravel()
-    highs = np.hstack([balance, most, np.tile(high, (states, 1))]).ravel()
-    change = np.diff(np.eye(states), axis=0) * (demand.smoothing_rad / demand.spacing_rad)[:, None]
-    over_path = sparse.csc_matrix(np.eye(states) + change.T @ change)
-    kinds = sparse.diags(np.repeat([1.0, 0.0], [forces, contacts]))
-    P = sparse.csc_matrix(sparse.triu(sparse.kron(over_path, kinds)))
-    return P, sparse.csc_matrix(sparse.block_diag(blocks)), lows, highs
+    cones = np.broadcast_to(
+        _cones(contacts, demand.friction), (states, contacts * FACETS, 4 * contacts)
+    )
+    balance = _padded(touch.grasp_map / _wrench_units(), contacts)
+    motors = _padded(motor_torque / demand.motor_limit_nmm, contacts)
+    carried = -demand.load / _wrench_units()[:, 0]
+    unbounded, none = (
+        np.full((states, contacts * FACETS), -UNBOUNDED),
+        np.zeros((states, contacts * FACETS)),
+    )
+    whole = np.ones(motors.shape[:2])
+    return (
+        np.concatenate([balance, cones, motors], axis=1),
+        np.hstack([carried, unbounded, -whole]),
+        np.hstack([carried, none, whole]),
+    )
 
 
-def _contact_rows(contacts: int, friction: float) -> Array:
-    """Normal forces, slacks, and facets of the cones (n FACETS, 4n) that slacks widen."""
+def _cones(contacts: int, friction: float) -> Array:
+    """Facets (n FACETS, 4n) of the cones, which the slacks widen."""
     angles = 2 * np.pi * np.arange(FACETS) / FACETS
     inside = friction * np.cos(np.pi / FACETS)
     facets = np.column_stack([np.full(FACETS, -inside), np.cos(angles), np.sin(angles)])
-    cones = np.kron(np.eye(contacts), facets)
     widened = np.kron(np.eye(contacts), np.full((FACETS, 1), -1.0))
-    normal = np.kron(np.eye(contacts), [[1.0, 0.0, 0.0]])
-    none = np.zeros((contacts, contacts))
-    rows = [[normal, none], [np.zeros_like(normal), np.eye(contacts)], [cones, widened]]
-    return np.asarray(np.block(rows), dtype=np.float64)
+    return np.asarray(np.hstack([np.kron(np.eye(contacts), facets), widened]), dtype=np.float64)
 
 
 def _padded(rows: Array, contacts: int) -> Array:

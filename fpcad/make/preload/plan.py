@@ -34,6 +34,8 @@ DAMPING_MM = 1.0
 """Lever [mm] below which a joint is no means to sink a finger into the skin."""
 SOFTENING_ROUNDS = 5
 """How often forces are lowered for stiffness; what is then missing shows in the margins."""
+CLOSE_ENOUGH = 0.98
+"""Share of the needed stiffness with which forces are no longer lowered."""
 CELL_RAD = np.radians(1.0)
 """Spacing of the states that forces are planned for; between them they are interpolated."""
 
@@ -97,7 +99,7 @@ def _planned_forces(
     for tries in range(SOFTENING_ROUNDS):
         forces = grip_forces(contacts, motor_torque, _demand(spec, grid, least, most))
         given = least_stiffness(contacts, stiffness, forces)
-        if np.all(given >= needed):
+        if np.all(given >= CLOSE_ENOUGH * needed):
             break
         factor = _bearable(whole, given, needed)
         least = least * factor
