@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NoReturn
@@ -26,7 +27,6 @@ from fpcad.run.limits import from_counts
 from fpcad.run.link import Link
 from fpcad.run.messages import (
     PRELOAD_URAD,
-    Ack,
     Arm,
     Cause,
     End,
@@ -66,7 +66,8 @@ class KnotStream:
         self._watch = watch
         self._clock = DeviceClock()
         self._buffer = buffer_knots
-        self._free = 0
+        self._times_us = [knot.t_us for knot in wire.messages]
+        self._left_behind = 0
         self._sent = 0
         self._prefill = min(buffer_knots, len(wire.messages))
         self._armed = self._started = self._ended = False
@@ -137,16 +138,14 @@ class KnotStream:
             if not self._clock.ready or self._link.unacknowledged():
                 return None
             return Start(self._clock.device_us(self._link.clock() + START_LEAD_S))
-        if self._sent < len(self._wire.messages) and self._free > self._link.unacknowledged(Knot):
+        if self._sent < len(self._wire.messages) and self._sent - self._left_behind < self._buffer:
             return self._wire.messages[self._sent]
         return None
 
     def _handle(self, msg: Any) -> None:
         if not isinstance(msg, Refused):  # refusals become errors here
             self._on_message(msg)
-        if isinstance(msg, Ack):
-            self._free = msg.free_knots
-        elif isinstance(msg, Telemetry):
+        if isinstance(msg, Telemetry):
             self._note(msg)
             if self._armed:
                 self._require_motion_allowed(msg.state, msg.cause)
@@ -158,9 +157,20 @@ class KnotStream:
 
     def _note(self, msg: Telemetry) -> None:
         self._last = msg
-        self._free = self._buffer - msg.queued_knots
+        if self._started and msg.state == State.RUNNING:
+            self._note_place(msg.path_us)
         self._clock.add(self._link.clock(), msg.device_us)
         self._watch.on_sample(to_sample(msg, self._link.resends, self._sent, self._health))
+
+    def _note_place(self, path_us: int) -> None:
+        """The controller forgets knots that the path has passed, but for the present segment's.
+
+        This is a count that only grows, whatever comes late or twice; the free places in an answer
+        that has been overtaken would promise room that there is no more.
+        """
+        # One microsecond less, since the place is told rounded.
+        passed = bisect_right(self._times_us, path_us - 1) - 1
+        self._left_behind = max(self._left_behind, min(passed, self._sent - 2))
 
     def _require_motion_allowed(self, state: int, cause: int) -> None:
         where = f"at {self._last.path_us / 1e6:.2f} s of the path" if self._last else "at the start"
