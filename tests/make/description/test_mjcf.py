@@ -131,7 +131,6 @@ def test_the_hand_can_be_attached_to_another_model(described):
     world = mujoco.MjSpec()
     for side, x in (("left/", -0.2), ("right/", 0.2)):
         hand = mujoco.MjSpec.from_file(str(described[CENTRE] / "mjcf" / "clay.xml"))
-        hand.meshdir = str(described[CENTRE] / "meshes" / "visual")
         world.worldbody.add_frame(pos=[x, 0, 0]).attach_body(hand.body("palm"), side, "")
     model = world.compile()
     assert model.nu == 24 and model.njnt == 24
