@@ -93,7 +93,7 @@ def read_limits(
         acceleration_rad_s2: limit of every joint, since URDF has no place for it.
         transmission: file whose bytes become part of the configuration's hash.
     """
-    joints = [joint for joint in _parse(urdf).iter("joint") if joint.get("type") == "revolute"]
+    joints = [joint for joint in parse_urdf(urdf).iter("joint") if joint.get("type") == "revolute"]
     rows = np.array([_limit_row(joint, urdf) for joint in joints]).reshape(-1, 3)
     try:
         return JointLimits(
@@ -108,7 +108,8 @@ def read_limits(
         raise TrajectoryError(f"{urdf}: {error}") from error
 
 
-def _parse(urdf: Path) -> ElementTree.Element:
+def parse_urdf(urdf: Path) -> ElementTree.Element:
+    """The root element of a URDF; :class:`TrajectoryError` where it cannot be read."""
     try:
         text = urdf.read_text(encoding="utf-8")
         # A URDF needs no document type, and refusing it keeps entity expansion out.
