@@ -1,6 +1,8 @@
-/* An image for measurements: each piece of work between two marks, which the simulator times.
+/* An image for measurements: each piece of work between two marks.
 
-   tools/time_avr.c reads them; on other targets a mark is nothing. */
+   On an AVR the simulator times them (tools/time_avr.c). On a Cortex-M the image sends each mark
+   with the reading of a counter (tests/firmware/test_pace.py), for QEMU to count instructions. */
+#include "bytes.h"
 #include "controller.h"
 #include "link.h"
 #include "motors.h"
@@ -13,7 +15,9 @@
 #include <avr/sleep.h>
 #define MARK(number) (GPIOR0 = (number))
 #else
-#define MARK(number) ((void)(number))
+#include "mcu.h"
+#define COUNTER (*(volatile uint32_t *)0xe000e018) /* runs down */
+#define MARK(number) note_mark(number)
 #endif
 
 #define KNOTS 20
@@ -22,6 +26,29 @@
 extern const struct hand_setup HAND_SETUP;
 
 static struct controller controller;
+
+#ifndef __AVR__
+static struct {
+    uint8_t number;
+    uint32_t counter;
+} marks[200];
+static uint16_t marked;
+
+static void note_mark(uint8_t number)
+{
+    marks[marked].number = number;
+    marks[marked++].counter = COUNTER;
+}
+
+static void send_marks(void)
+{
+    for (uint16_t i = 0; i < marked; i++) {
+        uint8_t bytes[5];
+        put_u32(put_u8(bytes, marks[i].number), marks[i].counter);
+        mcu_put(bytes, sizeof bytes);
+    }
+}
+#endif
 
 static void send(void *context, const uint8_t *bytes, uint8_t count)
 {
@@ -80,6 +107,13 @@ int main(void)
 {
     const struct board board = {
         .send = send, .exchange = motors_exchange, .torque_off = motors_torque_off};
+#ifndef __AVR__
+    mcu_start(10);
+    uint8_t byte;
+    while (!mcu_take_byte(&byte)) { /* until somebody listens */
+        mcu_rest();
+    }
+#endif
     prepare(&board);
     stream();
     for (uint8_t tick = 0; tick < 20; tick++) {
@@ -94,6 +128,9 @@ int main(void)
     take(MESSAGE_ESTOP, 0, NULL, 0);
     MARK(8);
     MARK(controller.state == STATE_ESTOP && controller.follower.path == 0 ? 0xff : 0xfe);
+#ifndef __AVR__
+    send_marks();
+#endif
     for (;;) {
 #ifdef __AVR__
         sleep_cpu();

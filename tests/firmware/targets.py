@@ -48,10 +48,23 @@ def running(target: str, *, segments: bool = False) -> Iterator[str]:
     """Name of the port at which a microcontroller that has just booted answers."""
     elf = image(target, f"{target}{'_segments' if segments else ''}.elf")
     if target == "avr":
-        command = [str(elf.parent / "simulate_avr"), str(elf)]
+        with _process([str(elf.parent / "simulate_avr"), str(elf)]) as name:
+            yield name
     else:
-        machine = ["-machine", "mps2-an385", "-nographic", "-monitor", "none", "-serial", "pty"]
-        command = ["qemu-system-arm", *machine, "-kernel", str(elf)]
+        with qemu(elf) as name:
+            yield name
+
+
+@contextmanager
+def qemu(elf: Path, *options: str) -> Iterator[str]:
+    """Name of the port of a Cortex-M3 in QEMU that has just booted."""
+    machine = ["-machine", "mps2-an385", "-nographic", "-monitor", "none", "-serial", "pty"]
+    with _process(["qemu-system-arm", *machine, *options, "-kernel", str(elf)]) as name:
+        yield name
+
+
+@contextmanager
+def _process(command: list[str]) -> Iterator[str]:
     with subprocess.Popen(
         command, 0, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
     ) as process:
