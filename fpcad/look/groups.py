@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,7 +98,13 @@ def representatives(labels: Labels, merit: Array, front: NDArray[np.bool_]) -> L
 
 
 def _t_sne(points: Array, perplexity: float) -> Array:
-    """Barnes-Hut t-SNE (n, 2); one thread, for sums over several differ in their last bits."""
+    """Barnes-Hut t-SNE (n, 2) of points (n, m), computed once for the same points."""
+    return np.frombuffer(_t_sne_bytes(points.tobytes(), points.shape[1], perplexity)).reshape(-1, 2)
+
+
+@lru_cache(maxsize=2)
+def _t_sne_bytes(points: bytes, width: int, perplexity: float) -> bytes:
+    """One thread, for sums over several differ in their last bits."""
     from sklearn.manifold import TSNE
 
     with threadpool_limits(limits=1):
@@ -108,4 +115,5 @@ def _t_sne(points: Array, perplexity: float) -> Array:
             max_iter=MAP_ROUNDS,
             n_jobs=1,
         )
-        return np.asarray(embedding.fit_transform(points), dtype=np.float64)
+        drawn = embedding.fit_transform(np.frombuffer(points).reshape(-1, width))
+        return np.asarray(drawn, dtype=np.float64).tobytes()

@@ -35,11 +35,13 @@ class LiveView:
     """Makes a candidate the chosen hand, exports it, and returns the id of the one that is."""
     token: str = field(default_factory=lambda: secrets.token_urlsafe(16))
     _lock: Lock = field(default_factory=Lock)
+    _page: str = ""
 
     def page(self) -> str:
         """The page of the run as it is now."""
         with self._lock:
-            return report_page(self.run, self.token)
+            self._page = self._page or report_page(self.run, self.token)
+            return self._page
 
     def paths(self, candidate: int) -> dict[str, Any]:
         """All paths of a candidate, from the store or traced now, and their block of numbers."""
@@ -53,7 +55,7 @@ class LiveView:
         """Choose a candidate by hand; tells which one is chosen now."""
         with self._lock:
             chosen = self.choose(candidate)
-            self.run = load(self.run.folder)
+            self.run, self._page = load(self.run.folder), ""
             return {"chosen": chosen}
 
 

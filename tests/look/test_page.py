@@ -83,6 +83,54 @@ def test_a_click_in_one_figure_marks_the_hand_in_all_and_changes_the_3d_view(ope
     assert after["numbers"] != before["numbers"]
 
 
+WHERE = """([name, share]) => {
+  const boxes = [...document.querySelectorAll(name)], figure = fpcad.figures.find((f) => boxes.includes(f.box));
+  figure.box.scrollIntoView({ block: "center" });
+  const box = figure.box.getBoundingClientRect(), { x, y, width, height } = box;
+  if (!figure.place) return [x + share * width, y + 0.5 * height];
+  const others = Array.from({ length: fpcad.state.count }, (_, row) => row).filter((row) => row !== fpcad.state.selected);
+  const [px, py] = figure.place(others[0]);
+  return [x + px, y + py];
+}"""
+
+
+@pytest.mark.parametrize(
+    "figure",
+    ["#landscapes .plot", "#map .plot", "#parallel .plot", "#shares .plot", "#efficiency .plot"],
+)
+def test_a_click_in_any_figure_selects_a_hand_for_all(opened: Page, figure):
+    chosen = opened.evaluate("fpcad.state.selected")
+    before: dict[str, Any] = opened.evaluate(DRAWN)
+    for share in (0.12, 0.5, 0.97):  # one of the three is another hand
+        if opened.evaluate("fpcad.state.selected") == chosen:
+            opened.mouse.click(*opened.evaluate(WHERE, [figure, share]))
+    after: dict[str, Any] = opened.evaluate(DRAWN)
+    assert opened.evaluate("fpcad.state.selected") != chosen
+    assert after["hand"] != before["hand"]
+    assert after["numbers"] != before["numbers"]
+    redrawn = [old != new for old, new in zip(before["figures"], after["figures"], strict=True)]
+    assert all(redrawn)
+
+
+def test_a_brush_filters_by_what_it_covers(opened: Page, real_run: Run):
+    opened.locator("#parallel").scroll_into_view_if_needed()
+    axis = "fpcad.figures.find((f) => f.columns).columns[6]"
+    x, top, name = opened.evaluate(
+        f"() => {{ const c = {axis}, box = document.querySelector('#parallel .plot').getBoundingClientRect();"
+        " return [box.left + c.x, box.top + c.y(100), c.name]; }"
+    )
+    low = opened.evaluate(f"{axis}.y(50) - {axis}.y(100)")
+    opened.mouse.move(x, top)
+    opened.mouse.down()
+    opened.mouse.move(x, top + low, steps=5)
+    opened.mouse.up()
+    limit = opened.evaluate("(name) => fpcad.state.limits.get(name).range", name)
+    assert limit == pytest.approx([50, 100], abs=2)
+    scores = real_run.matrix([name])[:, 0]
+    passing = [int(limit[0] <= score <= limit[1]) for score in scores]
+    assert opened.evaluate("Array.from(fpcad.state.passing)") == passing
+
+
 @pytest.mark.parametrize("index", [0, 1, 2])
 def test_the_slider_moves_the_fingers_along_the_stored_path(opened: Page, real_run: Run, index):
     assert real_run.selected is not None

@@ -6,7 +6,7 @@ import { exactPaths } from "./motion.js";
 
 export class Actions {
   constructor(host, state, stage, player, compare, exporter) {
-    Object.assign(this, { state, stage, player, exporter });
+    Object.assign(this, { state, stage, player, compare, exporter });
     const button = (text, act) => make("button", { type: "button", onclick: act }, text);
     host.append(button("Keep beside", () => compare.add(state.selected)));
     if (stage) host.append(button("Save PNG", () => this.#png()), button("Save GLB", () => this.#glb()));
@@ -43,6 +43,7 @@ export class Actions {
     if (!answer.ok) return this.#say(told.error);
     run.exact.push(...(await unpack({ exact: told.exact }, "traced", told.block)).exact);
     if (this.state.selected === row) this.player.reload();
+    this.compare.reload(row);
   }
 
   async #choose() {

@@ -22,7 +22,12 @@ export class Compare {
     const card = make("article", { class: "card" }, title, close, view, controls, make("table", {}, ...lines));
     this.host.append(card);
     card.stage = this.openStage(view);
-    new Player(controls, { run: this.run, selected: row, on() {} }, card.stage);
+    card.player = new Player(controls, { run: this.run, selected: row, on() {} }, card.stage);
+  }
+
+  /** Shows the paths of a hand that have come since it was put here. */
+  reload(row) {
+    this.host.children[this.rows.indexOf(row)]?.player.reload();
   }
 
   #remove(card, row) {
