@@ -65,6 +65,25 @@ def _anywhere(last: Verb, told: str) -> Callable[..., None]:
     return command
 
 
+def _export(
+    name: Design,
+    build: BuildFolder = Path("build"),
+    workers: WorkerCount = 0,
+    finger: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Write one finger's print files too, to try.")
+    ] = None,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> None:
+    """Write the chosen hand's parts, URDF, transmission, trajectories."""
+    _run("export", name, build, workers, force, as_json)
+    if finger is not None:
+        from fpcad.pipeline.finished import export_finger
+
+        folder = export_finger(build / load_spec(spec_file(name)).name, finger)
+        typer.echo(f"{folder}: the parts of {finger} alone, with a mount for a vice", err=as_json)
+
+
 STAGE_VERBS: dict[str, Callable[..., None]] = {
     "design": _anywhere(
         "report", "Make the whole hand: solve, sample, evaluate, select, export, report."
@@ -78,7 +97,7 @@ STAGE_VERBS: dict[str, Callable[..., None]] = {
         "select",
         "Score the candidates and choose one: metrics.parquet, paths.parquet, selected.json.",
     ),
-    "export": _here("export", "Write the chosen hand's parts, URDF, transmission, trajectories."),
+    "export": _export,
 }
 for _verb, _command in STAGE_VERBS.items():
     verbs.command(_verb)(_command)

@@ -9,6 +9,8 @@ from types import MappingProxyType
 
 from fpcad.make.bom import bill_of_materials, bom_csv
 from fpcad.make.description import LinkBody, describe, write_description
+from fpcad.make.documents.extras import extra_parts
+from fpcad.make.documents.guide import write_guide
 from fpcad.make.documents.inventory import write_inventory
 from fpcad.make.documents.print_ready import write_print_files
 from fpcad.make.documents.stamp import Stamp
@@ -82,7 +84,9 @@ def write_parts(
     whole = assembly_step(assembly, geometry, stamp)
     files.append(write_whole(folder / "step" / ASSEMBLY_STEP, whole))
     files += write_print_files(assembly.parts, spec.print, folder, stamp)
+    files += write_print_files(extra_parts(spec), spec.print, folder, stamp)
     files += write_inventory(assembly, folder, stamp)
+    files += write_guide(spec, assembly, geometry, folder, stamp)
     bill = bill_of_materials(spec, assembly, len(geometry.fingers), {})
     return [*files, write_whole(folder / "bom.csv", bom_csv(bill, stamp))]
 

@@ -7,9 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from fpcad.errors import StoreError
+from fpcad.make.documents.inventory import read_inventory
+from fpcad.make.documents.one_finger import write_finger
+from fpcad.make.documents.stamp import Stamp
 from fpcad.model.geometry import HandGeometry, hand_geometry
 from fpcad.model.hand import hand_template
 from fpcad.sample.space import design_space
+from fpcad.spec.dump import spec_hash
 from fpcad.spec.load import load_spec
 from fpcad.spec.schema import Spec
 from fpcad.store import read_json
@@ -27,3 +31,14 @@ def finished_hand(folder: Path) -> tuple[Spec, HandGeometry]:
     design = read_json(selected)["design"]
     named = np.array([design[name] for name in space.names])
     return spec, hand_geometry(hand_template(spec.hand), space.internal(named))
+
+
+def export_finger(folder: Path, finger: str) -> Path:
+    """Write one finger's print files beside the whole hand's, and return their folder."""
+    spec, geometry = finished_hand(folder)
+    chosen = int(read_json(folder / "selected.json")["id"])
+    stamp = Stamp(spec.name, chosen, spec_hash(spec))
+    assembly = read_inventory(folder / "parts")
+    target = folder / "parts" / f"finger_{finger}"
+    write_finger(spec, assembly, geometry, finger, target, stamp)
+    return target

@@ -1,0 +1,154 @@
+"""parts/assembly.md: how a hand goes together, with pictures, tables and an order of steps."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from fpcad.errors import ToolchainError
+from fpcad.make.documents.stamp import Stamp
+from fpcad.make.documents.views import cut_open, draw, finger_pieces, hand_pieces
+from fpcad.make.gates.orientation import part_orientation
+from fpcad.make.gates.postures import rest_joints
+from fpcad.make.parts.assembly import Assembly
+from fpcad.make.parts.catalogue import Tendon, lookup
+from fpcad.model.geometry import HandGeometry
+from fpcad.model.transmission import finger_transmission
+from fpcad.spec.schema import Spec
+from fpcad.spec.templates import TEMPLATES
+from fpcad.store import write_whole
+from fpcad.units import RAD_PER_DEG
+
+log = logging.getLogger(__name__)
+
+FILE, PICTURES = "assembly.md", "pictures"
+TENDON = "DYNEEMA-0.6"
+PRETENSION_N = 15.0
+"""Holds a strand on its pulley while the other one of its loop is pulled; well below what creeps."""
+KNOT = "figure-eight stopper at the anchor, double figure-eight loop at the tensioner"
+RETENSION = "after 1 h, after 10 h, then every 50 h of use: braid beds in and creeps"
+MOTORS = ("m1", "m2", "m3")
+LOOPS = {
+    "m1": "MCP differential, one side",
+    "m2": "MCP differential, other side",
+    "m3": "IP joint",
+}
+VIEWS = {
+    "finger_apart": ("A finger taken apart", (0.3, -1.0, 0.5)),
+    "finger_cut": ("A finger cut open at its middle plane", (0.0, -1.0, 1e-4)),
+    "hand": ("The whole hand at rest", (0.55, -1.0, 0.3)),
+}
+
+
+def write_guide(
+    spec: Spec, assembly: Assembly, geometry: HandGeometry, folder: Path, stamp: Stamp
+) -> list[Path]:
+    """Write the guide and its pictures; without what drawing needs, the guide says what is missing."""
+    files, missing = [], ""
+    pieces = {
+        "finger_apart": lambda: finger_pieces(assembly, geometry, apart=True),
+        "finger_cut": lambda: cut_open(finger_pieces(assembly, geometry, apart=False)),
+        "hand": lambda: hand_pieces(assembly, geometry, rest_joints(spec.hand, geometry)),
+    }
+    try:
+        for name, (_, direction) in VIEWS.items():
+            file = folder / PICTURES / f"{name}.png"
+            files.append(draw(pieces[name](), file, direction, stamp))
+    except ToolchainError as error:
+        missing = str(error)
+        log.warning("assembly.md has no pictures: %s", missing)
+    text = guide_text(spec, assembly, stamp, missing)
+    return [*files, write_whole(folder / FILE, text)]
+
+
+def guide_text(spec: Spec, assembly: Assembly, stamp: Stamp, missing: str = "") -> str:
+    """The guide in Markdown; `missing` says why there are no pictures."""
+    lines = [f"# How to put {spec.name} together", "", stamp.text, ""]
+    if missing:
+        lines += [f"No pictures were drawn: {missing}", ""]
+    else:
+        lines += [
+            line
+            for name, (title, _) in VIEWS.items()
+            for line in (f"![{title}]({PICTURES}/{name}.png)", "", f"{title}.", "")
+        ]
+    lines += ["## Print", "", *_print_table(spec, assembly), ""]
+    lines += ["## Buy", "", *_bought_table(assembly), ""]
+    lines += ["## Tendons", "", *_tendon_table(spec), ""]
+    lines += ["## Steps", "", *_steps(spec, assembly), ""]
+    return "\n".join(lines)
+
+
+def _print_table(spec: Spec, assembly: Assembly) -> Iterator[str]:
+    yield "Each file of `print/` lies as it is to be printed. Print skins in TPE, all else rigid."
+    yield ""
+    yield "| part | count | material | height mm | needs support mm2 | stands on mm2 |"
+    yield "|---|---|---|---|---|---|"
+    for part in assembly.parts:
+        laid = part_orientation(part, spec.print)
+        figures = f"{laid.height_mm:.1f} | {laid.overhang_mm2:.0f} | {laid.base_mm2:.0f}"
+        yield f"| {part.name} | {part.count} | {part.material} | {figures} |"
+
+
+def _bought_table(assembly: Assembly) -> Iterator[str]:
+    yield "`bom.csv` has the sources, and power supply, fuse and wiring."
+    if assembly.bought:
+        yield ""
+        yield "| item | count | size | length mm | on |"
+        yield "|---|---|---|---|---|"
+    for item in assembly.bought:
+        length = "" if item.length_mm is None else f"{item.length_mm:g}"
+        yield f"| {item.name} | {item.count} | {item.size} | {length} | {item.link} |"
+
+
+def _tendon_table(spec: Spec) -> Iterator[str]:
+    """One row for each motor of a finger: its loop of two strands."""
+    row = lookup("tendons", Tendon, TENDON)
+    allowed = row.breaking_n * row.knot_share
+    yield f"Every motor drives a closed loop of two strands. All are {row.size}, {row.diameter_mm:g} mm braid;"
+    yield f"a knot keeps {100 * row.knot_share:.0f} % of its {row.breaking_n:g} N, so {allowed:g} N."
+    yield ""
+    yield "| loop | moves | motor turns deg | strand travels mm | knots | pretension N | tighten again |"
+    yield "|---|---|---|---|---|---|---|"
+    for name, (turns, travel) in zip(MOTORS, strand_travel(spec), strict=True):
+        yield (
+            f"| {name}, every finger | {LOOPS[name]} | {turns:.0f} | {travel:.1f} | {KNOT} | "
+            f"{PRETENSION_N:g} | {RETENSION} |"
+        )
+
+
+def strand_travel(spec: Spec) -> list[tuple[float, float]]:
+    """Turn [deg] of each motor of a finger over the joints' limits, and its strands' travel [mm]."""
+    A = finger_transmission(spec.motors.transmission)
+    joints = TEMPLATES[spec.hand.template].joints
+    spans = np.array([np.ptp(spec.hand.joint_limits_deg[joint]) for joint in joints])
+    turns = np.abs(A) @ spans
+    radius = spec.motors.transmission.spool_radius_mm
+    return [(float(turn), float(turn * RAD_PER_DEG * radius)) for turn in turns]
+
+
+def _steps(spec: Spec, assembly: Assembly) -> Iterator[str]:
+    bought = {item.kind for item in assembly.bought}
+    steps: Sequence[tuple[bool, str]] = (
+        (True, "Print `fit_coupon` and try the pins in its holes. If the middle hole is too tight or too loose, "
+               f"change `print.clearance_mm` (now {spec.print.clearance_mm:g}) by the step of the hole that fits, and export again."),
+        (True, "Make one finger first: `fpcad export NAME --finger index` writes its parts alone."),
+        ("inserts" in bought, "Melt the heat-set inserts into palm and flange, flush, at 220 C, and let them cool."),
+        ("bearings" in bought, "Press the bearings into the bones, on their outer rings."),
+        (True, "IP joint: put the distal bone's tongue into the proximal bone's clevis and push the pin through."),
+        (True, "MCP joint: join the proximal bone to the cross with its two abduction pins, then the cross to the palm "
+               "with the flexion pin, from the side."),
+        (True, "Move every joint by hand through its range. Nothing may rub; `checks.csv` tells the clearances."),
+        (True, "Lead the strands: first the IP loop across the MCP joint, then the two loops of the differential. "
+               "Knot them at the anchors as the table says."),
+        (True, "Fix the motors, turn their spools to the middle, and put the loops on."),
+        (True, f"Tighten each loop to {PRETENSION_N:g} N, both strands alike, the finger straight."),
+        (True, "Pull the skins over the bones, warm: a hair dryer makes TPE wide. The bend planes face the palm."),
+        (True, "Wire the motors, with fuse and switch in the + lead. Set their ids one by one."),
+        (True, "Home the hand before the first trajectory, and keep a finger on the switch."),
+    )  # fmt: skip
+    wanted = (text for needed, text in steps if needed)
+    yield from (f"{number}. {text}" for number, text in enumerate(wanted, start=1))
