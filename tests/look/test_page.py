@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, FloatRect, Page
 
 from fpcad.look.report import report_page
 from fpcad.look.run import Run
@@ -200,8 +200,9 @@ def test_the_page_fits_and_its_picture_is_kept(browser: Browser, real_page: Path
     SCREENSHOTS.mkdir(parents=True, exist_ok=True)
     height = tab.evaluate("document.documentElement.scrollHeight")
     for k, top in enumerate(range(0, height, SLICE)):
-        part = {"x": 0, "y": top, "width": width, "height": min(SLICE, height - top)}
         file = SCREENSHOTS / f"report-{width}-{scheme}-{k + 1}.png"
+        slice_height = min(SLICE, height - top)
+        part = FloatRect(x=0, y=top, width=width, height=slice_height)
         tab.screenshot(path=file, full_page=True, clip=part)
     tab.close()
 
