@@ -6,7 +6,7 @@ import difflib
 import math
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +24,6 @@ from fpcad.run.controller_homing import home_controller
 from fpcad.run.driver import Driver
 from fpcad.run.drivers.choose import (
     SERVOS,
-    Pace,
     guards_of,
     register_bus,
     simulated_bus,
@@ -56,14 +55,12 @@ _TIGHT_RAD = math.radians(2.0)
 """Slack of a spool that is good enough."""
 
 
-@dataclass(frozen=True)
 class Bench:
     """A hand, the driver that reaches it, and the file of what was measured on it."""
 
-    hand: HandFiles
-    driver: str
-    port: str | None
-    calibration: Path
+    def __init__(self, hand: HandFiles, driver: str, port: str | None, calibration: Path) -> None:
+        self.hand, self.driver, self.port, self.calibration = hand, driver, port, calibration
+        self._pace = pace_of(driver, port)
 
     def home(self) -> Calibration:
         """Find zeros and write them down."""
@@ -285,10 +282,6 @@ class Bench:
 
     def _pulls(self, bus: ServoBus, motors: MotorMap) -> PullTest:
         return PullTest(bus, motors, self.hand.limits, self._pace.clock, self._pace.sleep)
-
-    @property
-    def _pace(self) -> Pace:
-        return pace_of(self.driver, self.port)
 
     def _connect(self):
         return controller_line(needed_port("fw", self.port), self.hand.limits, self._straight())

@@ -20,6 +20,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from fpcad.run.errors import CalibrationError
+from fpcad.run.firmware_setup import FirmwareSetup
 from fpcad.run.limits import JointLimits
 from fpcad.store import write_whole
 
@@ -60,11 +61,16 @@ class Calibration:
                 raise _implausible(f"{name}: zero at {zero:g} rad, sign {sign:g}")
             if not np.isnan(soft) and not _STIFFNESS_NM_RAD[0] <= soft <= _STIFFNESS_NM_RAD[1]:
                 raise _implausible(f"{name}: stiffness of {soft:g} N m/rad")
-        design = limits.upper_rad - limits.lower_rad
+        design = designed_ranges(limits)
         for name, low, high, wanted in zip(
             self.joints, self.lower_rad, self.upper_rad, design, strict=True
         ):
             require_range(name, high - low, wanted, _implausible)
+
+
+def designed_ranges(limits: JointLimits) -> Array:
+    """Angles (n,) between the joints' end stops, which lie a little beyond the limits [rad]."""
+    return limits.upper_rad - limits.lower_rad + 2 * FirmwareSetup.end_stops_rad
 
 
 def require_range(name: str, found_rad: float, wanted_rad: float, error: Any) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.run.bus import BusState, ServoBus
-from fpcad.run.calibration import require_range
+from fpcad.run.calibration import designed_ranges, require_range
 from fpcad.run.errors import HeldByUser, HomingError
 from fpcad.run.limits import JointLimits
 from fpcad.run.link import Clock
@@ -107,7 +107,7 @@ class Homing:
         lower = self._end(joint, -1.0)
         self._tell(joint, "to its upper end")
         upper = self._end(joint, 1.0)
-        wanted = self._limits.upper_rad[joint] - self._limits.lower_rad[joint]
+        wanted = designed_ranges(self._limits)[joint]
         require_range(name, upper - lower, wanted, self._failure)
         # Rest where the finger hinders the others least: straight, or the middle of its range.
         straight = min(max(0.0, self._limits.lower_rad[joint]), self._limits.upper_rad[joint])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,6 +21,8 @@ from fpcad.spec.catalogue import motor
 SERVOS: dict[str, type[ServoRegisterBus]] = {"dynamixel": DynamixelBus, "feetech": FeetechBus}
 DRIVERS = ("fw", "sim", *SERVOS)
 """Names that users give: the project's firmware, simulated motors, and the servo makers."""
+FASTEST = 100.0
+"""Rate of simulated motors at which no time is waited for."""
 _GUARD_SHARE = 0.9
 """Part of the stall current that ends a run."""
 
@@ -39,25 +40,32 @@ def register_bus(kind: str, hand: HandFiles, port: str) -> ServoRegisterBus:
     return made(hand.motors, hand.numbers, model, port, rate)
 
 
-@dataclass(frozen=True)
 class Pace:
-    """How time passes on a bus; only that of simulated motors can be hurried."""
+    """How time passes on a bus; only that of simulated motors can be hurried.
 
-    rate: float = 1.0
+    At the highest rate nobody waits for it: it passes when somebody sleeps, as fast as it can.
+    """
+
+    def __init__(self, rate: float = 1.0) -> None:
+        self.rate = rate
+        self._unhurried_s: float | None = 0.0 if rate >= FASTEST else None
 
     def clock(self) -> float:
         """The bus's time [s]."""
-        return time.monotonic() * self.rate
+        return time.monotonic() * self.rate if self._unhurried_s is None else self._unhurried_s
 
     def sleep(self, seconds: float) -> None:
         """Let the bus's time pass [s]."""
-        time.sleep(seconds / self.rate)
+        if self._unhurried_s is None:
+            time.sleep(seconds / self.rate)
+        else:
+            self._unhurried_s += seconds
 
 
 def simulated_bus(hand: HandFiles, joint_rad: Array, pace: Pace) -> SimBus:
     """Simulated motors whose joints are at `joint_rad` (n,), mounted as :func:`simulated_map` says."""
     plant = TendonHand(hand.transmission, hand.limits, joint_rad)
-    return SimBus(hand.motors, plant, simulated_map(hand).mounting, pace.clock)
+    return SimBus(hand.motors, plant, simulated_map(hand).mounting, pace.clock, pace.rate)
 
 
 def simulated_map(hand: HandFiles) -> MotorMap:

@@ -21,7 +21,7 @@ _AMBIENT_C = 25.0
 
 
 class SimBus:
-    """Motors named `names` on a :class:`TendonHand`; time passes with `clock`."""
+    """Motors named `names` on a :class:`TendonHand`; time passes with `clock`, `rate` times real."""
 
     without_host = "Its simulated motors stop when they hear nothing."
     torque_per_ma = TORQUE_PER_MA
@@ -32,7 +32,9 @@ class SimBus:
         hand: TendonHand,
         mounting: Mounting,
         clock: Clock = time.monotonic,
+        rate: float = 1.0,
     ) -> None:
+        self._rate = max(rate, 1.0)  # a host's silence is in the host's time
         self.names, self.hand, self.mounting = names, hand, mounting
         self._clock = clock
         self._open = self._on = self._tripped = False
@@ -76,7 +78,7 @@ class SimBus:
     def watchdog(self, timeout_s: float) -> bool:
         self._pass_time()
         self._tripped = False
-        self._patience_s = timeout_s
+        self._patience_s = timeout_s * self._rate
         return True
 
     def limit_torque(self, share: float) -> None:
