@@ -1,4 +1,5 @@
 import pickle
+from pathlib import Path
 
 from fpcad.errors import FpcadError
 from fpcad.run import errors
@@ -20,3 +21,21 @@ def test_errors_survive_pickling():
     for cls in CLASSES:
         copy = pickle.loads(pickle.dumps(cls("what", "where")))
         assert type(copy) is cls and copy.args == ("what", "where")
+
+
+def test_every_exit_code_is_documented():
+    text = (Path(__file__).parents[2] / "docs" / "exit-codes.md").read_text()
+    rows = {
+        line.split("|")[1].strip(): line.split("|")[2].strip()
+        for line in text.splitlines()
+        if line.startswith("| ")
+    }
+    assert all(rows.get(str(cls.exit_code)) == cls.__name__ for cls in CLASSES)
+
+
+def test_a_failure_is_one_line_that_ends_with_the_hand():
+    for cls in CLASSES:
+        said = str(cls("something happened; do this"))
+        assert "\n" not in said and said.startswith("something happened; do this")
+        assert said.endswith(cls.hand)
+    assert str(errors.LinkLost("gone?").leaving("It holds.")) == "gone? It holds."
