@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
@@ -12,27 +11,22 @@ from pathlib import Path
 import numpy as np
 import typer
 from rich.console import Console
-from rich.table import Table
-from serial.tools import list_ports
 
-from fpcad.commands.console import console
 from fpcad.commands.drive import kept_calibration, kept_map, kept_zeros, needed_port, pace_of
 from fpcad.commands.live import live_joints
+from fpcad.commands.numbering import known_name, servos_of
 from fpcad.run.bus import ServoBus
 from fpcad.run.calibration import Calibration, transmission_hash, write_calibration
 from fpcad.run.controller_homing import home_controller
 from fpcad.run.driver import Driver
 from fpcad.run.drivers.choose import (
-    SERVOS,
     guards_of,
-    register_bus,
     simulated_bus,
     simulated_map,
 )
 from fpcad.run.drivers.fw import ControllerBus
-from fpcad.run.drivers.servos import ServoRegisterBus
 from fpcad.run.drivers.sim import SimBus
-from fpcad.run.errors import HomingError, LimitsError, ServoMismatch, ServoSilent
+from fpcad.run.errors import HomingError, LimitsError
 from fpcad.run.firmware import FirmwareDriver
 from fpcad.run.hand_files import HandFiles
 from fpcad.run.homing import Homed, Homing, Report
@@ -50,7 +44,6 @@ from fpcad.run.session import handshake
 from fpcad.run.stream import to_sample
 
 out = Console()
-_SCANNED = range(1, 31)
 _TIGHT_RAD = math.radians(2.0)
 """Slack of a spool that is good enough."""
 
@@ -91,7 +84,7 @@ class Bench:
 
     def tension(self, motor: str | None, yes: bool) -> None:
         """Tell the slack of one motor's tendons, or of all."""
-        names = self.hand.motors if motor is None else (self._known(motor, self.hand.motors),)
+        names = self.hand.motors if motor is None else (known_name(motor, self.hand.motors),)
         with self._servos() as bus:
             motors = self._map().settled(bus.read_state().position_rad, self.hand.limits)
             bus.torque(True)
@@ -109,7 +102,7 @@ class Bench:
 
     def jog(self, joint: str, to_deg: float | None, by_deg: float | None, clear: bool) -> None:
         """Move one joint slowly."""
-        number = self.hand.limits.names.index(self._known(joint, self.hand.limits.names))
+        number = self.hand.limits.names.index(known_name(joint, self.hand.limits.names))
         with self._driver() as driver:
             present = driver.ready(clear=clear)
             goal = present.command_rad.copy()
@@ -144,33 +137,6 @@ class Bench:
                 out.print("torque is off, the hand lets go")
                 return
             out.print(f"the hand holds where it is. {bus.without_host}")
-
-    def list_ids(self) -> None:
-        """Which ids answer, and what the design has for them."""
-        wanted = dict(zip(self.hand.numbers, self.hand.motors, strict=True))
-        bus = self._register_bus()
-        with closing(bus):
-            there = bus.connect_only().scan(_SCANNED)
-        table = Table("id", "servo", "motor of the design")
-        for number in sorted({*there, *wanted}):
-            table.add_row(str(number), there.get(number, "no answer"), wanted.get(number, ""))
-        out.print(table)
-
-    def assign(self, motor: str, old: int | None) -> None:
-        """Give a servo the id that the design has for a motor."""
-        number = self.hand.numbers[self.hand.motors.index(self._known(motor, self.hand.motors))]
-        bus = self._register_bus()
-        with closing(bus):
-            there = sorted(bus.connect_only().scan(_SCANNED))
-            if old is None and len(there) != 1:
-                said = ", ".join(map(str, there)) or "none"
-                raise (ServoMismatch if there else ServoSilent)(
-                    f"{self.port}: ids that answer: {said}; connect one servo alone, or say --from"
-                )
-            old = there[0] if old is None else old
-            if old != number:
-                bus.assign(old, number)
-        out.print(f"{motor} has id {number}")
 
     def _home_servos(self) -> Calibration:
         pace, limits, known = self._pace, self.hand.limits, self.hand.motor_map()
@@ -255,12 +221,7 @@ class Bench:
     def _made_bus(self) -> ServoBus:
         if self.driver == "sim":
             return simulated_bus(self.hand, self._straight(), self._pace)
-        return self._register_bus()
-
-    def _register_bus(self) -> ServoRegisterBus:
-        if self.driver not in SERVOS:
-            raise typer.BadParameter(f"this verb is for the drivers {', '.join(SERVOS)}")
-        return register_bus(self.driver, self.hand, needed_port(self.driver, self.port))
+        return servos_of(self.hand, self.driver, self.port)
 
     def _map(self) -> MotorMap:
         if self.driver == "sim":
@@ -298,24 +259,3 @@ class Bench:
                 f"{limits.names[joint]}: {math.degrees(goal_rad):.1f} deg is beyond its limits, "
                 f"{math.degrees(low):.0f} to {math.degrees(high):.0f}"
             )
-
-    def _known(self, name: str, names: tuple[str, ...]) -> str:
-        if name not in names:
-            close = difflib.get_close_matches(name, names, 1)
-            hint = f"; did you mean {close[0]}?" if close else f"; there are {', '.join(names)}"
-            raise typer.BadParameter(f"no {name}{hint}")
-        return name
-
-
-def print_ports() -> None:
-    """Serial ports with what the system knows of them."""
-    found = sorted(list_ports.comports(), key=lambda port: port.device)
-    if not found:
-        console.print("no serial port is present; is the adapter plugged in?")
-    table = Table("port", "what", "maker", "serial number")
-    for port in found:
-        table.add_row(
-            port.device, port.description, port.manufacturer or "", port.serial_number or ""
-        )
-    if found:
-        out.print(table)

@@ -32,7 +32,7 @@ def _bench(name: str, build: Path, driver: str, port: str | None, calibration: P
 @verbs.command()
 def ports() -> None:
     """List the serial ports of this machine, and what is on them."""
-    from fpcad.commands.bench import print_ports
+    from fpcad.commands.numbering import print_ports
 
     print_ports()
 
@@ -113,14 +113,16 @@ def hold(
 
 
 @numbering.command("list")
-def list_ids(
+def list_servos(
     name: Design,
     driver: DriverName = "feetech",
     port: Port = None,
     build: BuildFolder = Path("build"),
 ) -> None:
     """List the servos that answer, and the motors that the design wants at their ids."""
-    _bench(name, build, driver, port, None).list_ids()
+    from fpcad.commands.numbering import list_ids
+
+    list_ids(_bench(name, build, driver, port, None).hand, driver, port)
 
 
 @numbering.command("assign")
@@ -135,4 +137,6 @@ def assign(
     ] = None,
 ) -> None:
     """Give a servo the id that the design has for a motor. Connect it alone, or say its present id."""
-    _bench(name, build, driver, port, None).assign(motor, old)
+    from fpcad.commands import numbering as ids
+
+    ids.assign(_bench(name, build, driver, port, None).hand, driver, port, motor, old)

@@ -6,7 +6,8 @@ import math
 
 from fpcad.errors import ToolchainError
 from fpcad.run.drivers.registers import Registers
-from fpcad.run.drivers.servos import Block, Reading, ServoModel, ServoRegisterBus
+from fpcad.run.drivers.servo_types import Block, Reading, ServoModel
+from fpcad.run.drivers.servos import ServoRegisterBus
 from fpcad.run.errors import ServoFault, WatchdogTripped
 
 _ID, _OPERATING_MODE, _HARDWARE_ERROR, _BUS_WATCHDOG, _GOAL_CURRENT = 7, 11, 70, 98, 102

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from fpcad.errors import ToolchainError
 from fpcad.run.drivers.registers import Registers
-from fpcad.run.drivers.servos import Block, Reading, ServoModel, ServoRegisterBus
+from fpcad.run.drivers.servo_types import Block, Reading, ServoModel
+from fpcad.run.drivers.servos import ServoRegisterBus
 from fpcad.run.errors import ServoFault
 
 _ID, _MODE, _TORQUE_LIMIT, _LOCK = 5, 33, 48, 55

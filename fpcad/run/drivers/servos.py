@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import Self, TypeVar
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from fpcad.run.bus import BusState, Identity, checked_goals
 from fpcad.run.drivers.registers import Registers
+from fpcad.run.drivers.servo_types import Block, Reading, ServoModel
 from fpcad.run.errors import PortMissing, ServoFault, ServoMismatch, ServoSilent
 from fpcad.run.link import Clock
 
@@ -26,32 +26,6 @@ _MISSES = 2
 _PULLING = "Its other servos hold their last goals."
 _SCANNED = 20
 """Ids that are tried when one is missing, to tell which there are."""
-
-
-@dataclass(frozen=True)
-class ServoModel:
-    """One type of servo, as its maker numbers it."""
-
-    name: str
-    stall_nm: float
-    stall_ma: float
-
-
-@dataclass(frozen=True)
-class Reading:
-    """One servo's registers, read."""
-
-    counts: int
-    current_ma: float
-    temperature_c: float
-
-
-@dataclass(frozen=True)
-class Block:
-    """Neighbouring registers."""
-
-    address: int
-    length: int
 
 
 class ServoRegisterBus(ABC):
