@@ -8,10 +8,14 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from benchmarks.physics_hypothesis.report import page, read_results
+from benchmarks.physics_hypothesis.run import run
 from fpcad.commands.console import ConsoleReporter
 from fpcad.pipeline.run import run_stages
 from fpcad.pipeline.stage import Build
 from fpcad.spec.load import load_spec
+from fpcad.spec.schema import Spec
+from fpcad.store import write_whole
 
 SPARE = 1.15
 """How many more hands are sampled than tried: some do not wield in all poses."""
@@ -25,6 +29,7 @@ def main() -> None:
     parser.add_argument("--build", type=Path, default=Path("build/physics"))
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--time-step-ms", type=float, default=1.0)
+    parser.add_argument("--page", type=Path, default=Path("docs/physics-hypothesis.md"))
     parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args()
     spec = load_spec(asked.spec)
@@ -32,10 +37,22 @@ def main() -> None:
     spec = spec.model_copy(update={"sampling": sampling})
     build = Build(spec, asked.build / spec.name, asked.workers, ConsoleReporter())
     run_stages(build, "evaluate")
-    from benchmarks.physics_hypothesis.run import run
+    trials = asked.build / "trials"
+    run(build, asked.hands, trials, asked.time_step_ms / 1000.0, asked.seed)
+    write_whole(asked.page, page(read_results(trials), about(spec, asked)))
 
-    results = asked.build / "trials"
-    run(build, asked.hands, results, asked.time_step_ms / 1000.0, asked.seed)
+
+def about(spec: Spec, asked: argparse.Namespace) -> str:
+    """What was run, in words."""
+    radii = ", ".join(f"{k} {v:g}" for k, v in spec.motors.transmission.model_dump().items())
+    grip = ", ".join(f"{k} {v}" for k, v in spec.grip.model_dump(exclude_none=True).items())
+    return (
+        f"Written by `python -m benchmarks.physics_hypothesis {asked.spec} --hands {asked.hands}`: "
+        f"hands drawn with seed {asked.seed} from {spec.sampling.candidates} candidates, each pose's "
+        f"exported trajectory in MuJoCo in the open loop, steps of {asked.time_step_ms:g} ms. Links are "
+        f"capsules of even density; docs/physics.md tells the rest.\n\n"
+        f"Motors {spec.motors.type}; {radii}. Grip: {grip}."
+    )
 
 
 if __name__ == "__main__":

@@ -1,0 +1,33 @@
+"""The page about trials in physics, from results made up so that its numbers are known."""
+
+from __future__ import annotations
+
+from benchmarks.physics_hypothesis.report import KINEMATIC, OF_GRIP, page
+
+
+def result(number: int, share: float, held: bool = True, faults: dict[str, str] | None = None):
+    trial = {"held": held, "reached_deg": 50.0 * share, "planned_deg": 50.0}
+    metrics = {name: float(number) for name in KINEMATIC}
+    margins = dict.fromkeys(OF_GRIP, 1.0)
+    pose = {"metrics": metrics, "margins": margins, "trials": {"unloaded": trial}}
+    return {"id": number, "poses": {"a": pose}, "faults": faults or {}, "seconds": 1.0}
+
+
+def test_hands_are_counted_by_load_and_share():
+    text = page([result(1, 0.4), result(2, 0.6), result(3, 0.95), result(4, 0.99, held=False)], "x")
+    row = next(line for line in text.splitlines() if line.startswith("| unloaded | a |"))
+    counts = [cell.split(")")[0].split("(")[1] for cell in row.split("|")[3:6]]
+    assert counts == ["3", "2", "1"]
+
+
+def test_a_pose_without_trajectory_counts_as_not_held():
+    text = page([result(1, 0.95, faults={"b": "no grip"}), result(2, 0.95)], "x")
+    row = next(line for line in text.splitlines() if line.startswith("| unloaded | all |"))
+    assert "50% (1)" in row
+
+
+def test_a_figure_that_orders_hands_as_physics_does_correlates_fully():
+    text = page([result(n, 0.2 * n) for n in range(1, 5)], "x")
+    row = next(line for line in text.splitlines() if line.startswith("| metrics tmr_deg"))
+    assert row.endswith("| +1.00 |")
+    assert "| margins cone_share | - |" in text
