@@ -10,6 +10,7 @@ import numpy as np
 from fpcad.errors import MakeError
 from fpcad.make.hand import make_hand
 from fpcad.make.preload.tighten import tightened
+from fpcad.make.survive import survival, told
 from fpcad.make.trajectory import Trajectory, build_trajectory
 from fpcad.make.trajectory_file import write_trajectory
 from fpcad.model.geometry import hand_geometry
@@ -24,7 +25,7 @@ from fpcad.store import read_json, read_table, write_json
 from fpcad.wield.evaluate import contact_projector
 from fpcad.wield.path import WieldingPath
 
-GRIP = "grip.json"
+GRIP, SURVIVAL = "grip.json", "survival.json"
 PART_STEPS = 24
 """About how many steps `make_hand` tells, for the bar."""
 
@@ -61,9 +62,9 @@ def _export_chosen(build: Build) -> int:
     named = np.array([selected["design"][name] for name in space.names])
     design = space.internal(named)
     geometry = hand_geometry(build.bench.template, design)
-    trajectories, margins = {}, {}
+    trajectories, margins, paths = {}, {}, read_paths(build, int(selected["id"]))
     with build.reporter.stage("trajectories", len(build.spec.poses)) as bar:
-        for path in read_paths(build, int(selected["id"])).values():
+        for path in paths.values():
             trajectory, margins[path.pose] = tightened(
                 make_trajectory(build, design, path),
                 *(build.spec, path.pose, geometry, path.hand_in_tool),
@@ -76,7 +77,12 @@ def _export_chosen(build: Build) -> int:
         progress = partial(bar.advance, 1)
         made = build.spec, geometry, build.folder
         files = make_hand(*made, progress, trajectories, int(selected["id"]))
-    return len(files) + len(build.spec.poses) + 1
+    with build.reporter.stage("errors of print and joints", None):
+        figures = survival(build.bench, design, paths.values())
+    write_json(build.folder / SURVIVAL, figures)
+    for line in told(figures):
+        build.reporter.note(line)
+    return len(files) + len(build.spec.poses) + 2
 
 
 def make_trajectory(build: Build, design: np.ndarray, path: WieldingPath) -> Trajectory:
@@ -92,6 +98,6 @@ EXPORT = Stage(
     "export",
     ("name", "motors", "motion", "grip", "print"),
     ("make",),
-    ("hand/transmission.yaml", "parts/bom.csv", "trajectories", GRIP),
+    ("hand/transmission.yaml", "parts/bom.csv", "trajectories", GRIP, SURVIVAL),
     export,
 )
