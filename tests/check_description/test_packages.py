@@ -95,6 +95,11 @@ def test_without_mujoco_its_check_is_skipped_and_says_so(package, monkeypatch):
     assert rows["MJCF"].verdict == "skipped" and "fpcad[physics]" in rows["MJCF"].reason
 
 
+def test_a_finished_build_is_described_without_fault(built_clay):
+    report = check_description(built_clay / "hand")
+    assert [row for row in report.rows if row.verdict != "good"] == []
+
+
 def test_a_folder_without_a_robot_is_an_error(tmp_path):
     with pytest.raises(StoreError, match="urdf"):
         check_description(tmp_path)
