@@ -58,7 +58,7 @@ def drive(
 
         def progress(at: runs.Progress) -> None:
             note = f"{at.state}, error {math.degrees(at.error_rad):.2f} deg, {at.resends} resends"
-            show(at.path_s, at.total_s, note, at.sample)
+            show(min(at.path_s, at.total_s), at.total_s, note, at.sample)
 
         pace = pace_of(driver, port)
         told = replace(options, on_progress=progress, motor_names=hand.motors)
@@ -139,9 +139,9 @@ def kept_calibration(hand: HandFiles, file: Path, driver: str) -> Calibration | 
         return None
 
 
-def calibration_of(design: Path, hand: HandFiles, driver: str) -> Path:
+def calibration_of(design: Path, hand: HandFiles, driver: str, port: str | None) -> Path:
     """File of the hand's calibration; simulated motors have one of their own, in the build."""
-    if driver == "sim":
+    if driver == "sim" or (port or "").partition(":")[0] in SIMULATED_PORTS:
         return hand.folder / "runs" / "calibration-sim.yaml"
     return calibration_file(design, hand.spec.name)
 

@@ -51,7 +51,7 @@ def live_joints(title: str, names: tuple[str, ...]) -> Iterator[Show]:
 def joint_table(names: tuple[str, ...], sample: Sample) -> Table:
     """All joints at one instant, in degrees."""
     table = Table(box=None, padding=(0, 1))
-    for heading in ("joint", "goal", "is", "error", "mA", "C"):
+    for heading in ("joint", "goal", "is", "error", "motor mA", "motor C"):
         table.add_column(heading, justify="left" if heading == "joint" else "right")
     for i, name in enumerate(names):
         goal, position = sample.command_rad[i], sample.position_rad[i]

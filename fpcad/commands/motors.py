@@ -25,7 +25,7 @@ def _bench(name: str, build: Path, driver: str, port: str | None, calibration: P
     spec = load_spec(design)
     hand = read_hand(spec, build / spec.name)
     drive.known_driver(driver)
-    kept = calibration or drive.calibration_of(design, hand, driver)
+    kept = calibration or drive.calibration_of(design, hand, driver, port)
     return Bench(hand, driver, port, kept)
 
 

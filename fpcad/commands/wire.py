@@ -86,7 +86,7 @@ def run_trajectory(
     if dry_run:
         report = drive.check(hand, file, options)
     else:
-        kept = calibration or drive.calibration_of(design, hand, driver)
+        kept = calibration or drive.calibration_of(design, hand, driver, port)
         report = drive.drive(hand, pose, driver, port, kept, options)
     if as_json:
         typer.echo(json.dumps(asdict(report), indent=2))
