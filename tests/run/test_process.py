@@ -210,3 +210,19 @@ def test_a_killed_host_leaves_joints_at_rest_and_no_process(tmp_path, phase_s, p
     assert time_s[-1] - running[-1] < 0.2  # to slow down
     acceleration = np.abs(np.diff(command, 2, axis=0)).max() * TICK_HZ**2
     assert acceleration <= hand_limits().acceleration_rad_s2[0] * 1.05
+
+
+def test_an_interrupted_command_holds_and_says_so_in_one_line(tmp_path):
+    """Ctrl-C to the program itself, on simulated motors that run in its own process."""
+    host = subprocess.Popen(
+        [sys.executable, "-m", "tests.run.interrupted_host", str(tmp_path)],
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+    )
+    assert host.stdout is not None
+    assert host.stdout.readline() == "moving\n"
+    host.send_signal(signal.SIGINT)
+    said, _ = host.communicate(timeout=20)
+    assert host.returncode == HeldByUser.exit_code
+    assert said.count("\n") == 1 and "the hand keeps its grip" in said

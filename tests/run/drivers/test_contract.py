@@ -5,7 +5,7 @@ import time
 import numpy as np
 import pytest
 
-from fpcad.run.errors import GoalRefused, LinkLost, PortMissing, WatchdogTripped
+from fpcad.run.errors import ControllerHeld, GoalRefused, LinkLost, PortMissing, WatchdogTripped
 from tests.firmware.core import made
 from tests.run.drivers.rigs import CONTROLLERS, DRIVERS, SERVOS, rig, unplug
 
@@ -68,8 +68,10 @@ def test_without_torque_nothing_follows(pulling):
     assert not before.torque_on
     pulling.bus.torque(False)
     if pulling.kind in CONTROLLERS:
-        return  # a controller refuses goals then; test_controllers.py
-    pulling.bus.write_goals(before.position_rad + 0.1)
+        with pytest.raises(ControllerHeld, match="ESTOP"):
+            pulling.bus.write_goals(before.position_rad + 0.01)
+    else:
+        pulling.bus.write_goals(before.position_rad + 0.1)
     time.sleep(0.1)
     after = pulling.bus.read_state().position_rad
     assert np.abs(after - before.position_rad).max() < 0.002
