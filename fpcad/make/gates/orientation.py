@@ -18,6 +18,9 @@ LAYER_MM = 0.3
 FLAT = 0.999
 HULL_FACES = 12
 """Of the convex hull's flat sides, so many of the largest are tried as bases."""
+TIPPING_BASE_MM2 = 10.0
+TIPPING_COST = 20.0
+"""What stands on less than that tips: then a millimetre of height costs so many mm^2 of overhang."""
 SMALL_BASE_COST = 5.0
 """What a square millimetre that the base lacks costs, in square millimetres of overhang."""
 
@@ -56,7 +59,9 @@ def best_orientation(mesh: trimesh.Trimesh, overhang_deg: float) -> Orientation:
 
     def cost(o: Orientation) -> tuple[float, float]:
         lacking = max(want - o.base_mm2, 0.0)
-        return round(o.overhang_mm2 + SMALL_BASE_COST * lacking, 3), round(o.height_mm, 3)
+        tipping = TIPPING_COST * o.height_mm if o.base_mm2 < TIPPING_BASE_MM2 else 0.0
+        sum_mm2 = o.overhang_mm2 + SMALL_BASE_COST * lacking + tipping
+        return round(sum_mm2, 3), round(o.height_mm, 3)
 
     return min(tried, key=cost)
 

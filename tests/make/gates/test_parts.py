@@ -109,6 +109,11 @@ def test_a_table_is_printed_upside_down():
     )
 
 
+def test_what_has_no_flat_side_lies_low():
+    rod = trimesh.creation.capsule(height=40, radius=5)
+    assert best_orientation(rod, 45.0).height_mm == pytest.approx(10, abs=0.1)
+
+
 def test_the_first_error_is_the_reason_and_the_others_are_counted():
     faults = check_part(CLAY, part("thin", with_thin_wall(0.5))) * 2
     with pytest.raises(MakeError, match=r"thin: a wall of 0\.50 mm .*\(and 1 more faults"):

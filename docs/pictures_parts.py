@@ -1,0 +1,47 @@
+"""Draw a build's parts for the documents: .venv/bin/python docs/pictures_parts.py build/clay."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from fpcad.make.documents.inventory import read_inventory
+from fpcad.make.documents.print_ready import on_bed
+from fpcad.make.documents.stamp import Stamp
+from fpcad.make.documents.views import COLOURS, cut_open, draw, finger_pieces, hand_pieces
+from fpcad.make.gates.postures import rest_joints
+from fpcad.pipeline.finished import finished_hand
+from fpcad.spec.dump import spec_hash
+from fpcad.store import read_json
+
+GAP_MM = 8.0
+ROW_MM = 320.0
+
+
+def main(build: Path) -> None:
+    """Write NAME-parts.png, NAME-finger-apart.png, NAME-finger-cut.png and NAME-hand.png."""
+    spec, geometry = finished_hand(build)
+    assembly = read_inventory(build / "parts")
+    stamp = Stamp(spec.name, read_json(build / "selected.json")["id"], spec_hash(spec))
+    images = Path("docs") / "images"
+    rows, x, y, deep = [], 0.0, 0.0, 0.0
+    for part in assembly.parts:
+        mesh = on_bed(part, spec.print)
+        size = np.ptp(mesh.bounds, axis=0)
+        if x + size[0] > ROW_MM:
+            x, y, deep = 0.0, y - deep - GAP_MM, 0.0
+        mesh.apply_translation((x - mesh.bounds[0, 0], y - mesh.bounds[1, 1], 0))
+        x, deep = x + size[0] + GAP_MM, max(deep, size[1])
+        rows.append((mesh, COLOURS[part.material]))
+    draw(rows, images / f"{spec.name}-parts.png", (0.3, -1.0, 0.9), stamp)
+    apart = finger_pieces(assembly, geometry, apart=True)
+    draw(apart, images / f"{spec.name}-finger-apart.png", (0.3, -1.0, 0.5), stamp)
+    cut = cut_open(finger_pieces(assembly, geometry, apart=False))
+    draw(cut, images / f"{spec.name}-finger-cut.png", (0.0, -1.0, 1e-4), stamp)
+    whole = hand_pieces(assembly, geometry, rest_joints(spec.hand, geometry))
+    draw(whole, images / f"{spec.name}-hand.png", (0.55, -1.0, 0.3), stamp)
+
+
+main(Path(sys.argv[1]))
