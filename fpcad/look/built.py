@@ -14,14 +14,26 @@ Row = dict[str, str]
 BOM, CHECKS = Path("parts") / "bom.csv", Path("parts") / "checks.csv"
 SEVERITIES = ("error", "warning", "figure")
 FIGURES = ("value", "limit")
+UNITS = {"_g": "g", "_cm3": "cm³", "_mm": "mm"}
 SHOWN_REFUSALS = 10
 MOST_WARNINGS = 2
 """Of the checks at the top of the page; more of them would hide what it is about."""
 
 
 def parts_list(run: Run) -> list[Row]:
-    """Rows of parts/bom.csv; none before the export is done."""
-    return _rows(run, BOM)
+    """Rows of parts/bom.csv without columns that are empty in all of them, units in brackets.
+
+    None before the export is done.
+    """
+    rows = _rows(run, BOM)
+    filled = [name for name in (rows[0] if rows else ()) if any(row[name] for row in rows)]
+    return [{_heading(name): row[name] or "" for name in filled} for row in rows]
+
+
+def _heading(name: str) -> str:
+    unit = next((unit for suffix, unit in UNITS.items() if name.endswith(suffix)), "")
+    words = name.rsplit("_", 1)[0] if unit else name
+    return words.replace("_", " ") + (f" [{unit}]" if unit else "")
 
 
 def checks(run: Run) -> list[Row]:

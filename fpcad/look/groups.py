@@ -63,7 +63,11 @@ def flat_map(standardized: Array, free_names: tuple[str, ...], named: Array) -> 
 def design_map(run: Run) -> DesignMap:
     """The plane that landscapes are drawn over."""
     free = run.space.free
-    names = tuple(name for name, is_free in zip(run.space.names, free, strict=True) if is_free)
+    names = tuple(
+        f"{column.label} [{column.unit}]" if column.unit else column.label
+        for column, is_free in zip(run.parameters, free, strict=True)
+        if is_free
+    )
     return flat_map(run.space.standardize(run.designs), names, run.designs[:, free])
 
 

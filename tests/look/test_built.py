@@ -27,7 +27,7 @@ def exported(clay: Spec, tmp_path: Path) -> Run:
     folder = write_made_up_run(tmp_path / "clay", clay, 12)
     write_manifest(folder, dict.fromkeys((*STAGES, "export"), "done"))
     write_whole(folder / "parts" / "checks.csv", FOUND)
-    write_whole(folder / "parts" / "bom.csv", "item,count\npalm,1\n")
+    write_whole(folder / "parts" / "bom.csv", "item,count,mass_g,hours\npalm,1,39.31,\n")
     return load(folder)
 
 
@@ -44,7 +44,7 @@ def test_warnings_of_the_gates_stand_at_the_top_and_figures_do_not(exported: Run
     assert "palm: a wall of 0.90 mm where 1.20 mm are asked for." in told.warnings
     assert not any("clearance" in warning for warning in told.warnings)
     assert [row["severity"] for row in told.checks] == ["warning", "figure"]
-    assert told.parts == [{"item": "palm", "count": "1"}]
+    assert told.parts == [{"item": "palm", "count": "1", "mass [g]": "39.31"}]
 
 
 def test_many_warnings_of_the_gates_are_one_at_the_top(exported: Run):

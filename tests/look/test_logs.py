@@ -35,7 +35,7 @@ def log_table(peak_rad: float = 0.1) -> pa.Table:
     )
 
 
-def written(folder: Path, name: str, table: pa.Table, age_s: float = 0.0) -> Path:
+def write_log(folder: Path, name: str, table: pa.Table, age_s: float = 0.0) -> Path:
     file = folder / "runs" / name
     file.parent.mkdir(exist_ok=True)
     if file.suffix == ".csv":
@@ -48,7 +48,7 @@ def written(folder: Path, name: str, table: pa.Table, age_s: float = 0.0) -> Pat
 
 @pytest.mark.parametrize("ending", ["parquet", "csv"])
 def test_a_log_is_thinned_and_its_extremes_are_those_of_all_samples(tmp_path: Path, ending):
-    written(tmp_path, f"carve.{ending}", log_table())
+    write_log(tmp_path, f"carve.{ending}", log_table())
     (log,) = run_logs(tmp_path, warnings := [])
     facts = dict(log.facts)
     assert warnings == []
@@ -60,7 +60,7 @@ def test_a_log_is_thinned_and_its_extremes_are_those_of_all_samples(tmp_path: Pa
 
 
 def test_what_motors_do_not_tell_is_not_drawn(tmp_path: Path):
-    written(tmp_path, "carve.parquet", log_table())
+    write_log(tmp_path, "carve.parquet", log_table())
     (log,) = run_logs(tmp_path, [])
     assert [q.name for q in log.quantities] == ["error", "measured", "command", "current"]
     assert all(q.values.shape == (1, POINTS) for q in log.quantities)
@@ -68,7 +68,7 @@ def test_what_motors_do_not_tell_is_not_drawn(tmp_path: Path):
 
 def test_the_newest_runs_come_first_and_the_others_are_counted(tmp_path: Path):
     for k in range(MAX_RUNS + 2):
-        written(tmp_path, f"run-{k}.parquet", log_table(), age_s=k)
+        write_log(tmp_path, f"run-{k}.parquet", log_table(), age_s=k)
     logs = run_logs(tmp_path, warnings := [])
     assert [log.name for log in logs] == [f"run-{k}" for k in range(MAX_RUNS)]
     assert warnings == [f"Of {MAX_RUNS + 2} runs' logs the newest {MAX_RUNS} are shown."]
@@ -77,7 +77,7 @@ def test_the_newest_runs_come_first_and_the_others_are_counted(tmp_path: Path):
 @pytest.mark.parametrize("text", ["half a fi", "", "a,b\n1,2\n", "device_s\n", "device_s\nsoon\n"])
 @pytest.mark.parametrize("name", ["bad.parquet", "bad.csv"])
 def test_a_log_that_is_none_is_told_and_the_page_goes_on(tmp_path: Path, name, text):
-    written(tmp_path, "good.parquet", log_table())
+    write_log(tmp_path, "good.parquet", log_table())
     (tmp_path / "runs" / name).write_text(text)
     logs = run_logs(tmp_path, warnings := [])
     assert [log.name for log in logs] == ["good"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,11 +12,12 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, FloatRect, Page
 
-from fpcad.look.report import report_page
+from fpcad.look.report import report_page, write_report
 from fpcad.look.run import Run
 from fpcad.model.geometry import link_poses
 from fpcad.model.hand import hand_template
 from tests.look.conftest import SCREENSHOTS, show
+from tests.look.test_logs import log_table, write_log
 
 SLICE = 4000
 """Height of one picture [CSS pixels]; longer ones repeat themselves."""
@@ -216,6 +218,22 @@ def test_words_of_a_spec_are_shown_and_not_run(page: Page, made_up: Run, tmp_pat
     show(page, file)
     assert page.title() == "clay: design space"
     assert evil in page.locator("header").inner_text()
+
+
+def test_runs_on_motors_are_drawn(page: Page, made_up: Run, tmp_path: Path):
+    folder = Path(shutil.copytree(made_up.folder, tmp_path / "clay"))
+    write_log(folder, "carve.parquet", log_table())
+    show(page, write_report(folder))
+    assert "5.73 ° (thumb_mcp_flex)" in page.locator("section:has(.log)").inner_text()
+    curves = page.locator(".log path.curve")
+    curves.first.wait_for(state="attached")
+    assert curves.count() == 1
+    page.locator("#log-controls select").select_option("position")
+    page.locator(".log figure").first.scroll_into_view_if_needed()
+    curves.nth(1).wait_for(state="attached")
+    legend = page.locator(".log .legend").inner_text()
+    assert "mcp flex measured" in legend
+    assert "mcp flex command" in legend
 
 
 def test_numbers_of_the_page_are_the_tables(opened: Page, real_run: Run):
