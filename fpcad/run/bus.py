@@ -92,6 +92,11 @@ class ServoBus(MotorBus, Protocol):
         ...
 
     @property
+    def goal_range_rad(self) -> tuple[float, float]:
+        """Least and greatest goal that a motor takes."""
+        ...
+
+    @property
     def torque_per_ma(self) -> float:
         """Torque of a motor for each mA that it draws [N m / mA]."""
         ...

@@ -21,6 +21,7 @@ from fpcad.run.errors import HeldByUser, HomingError
 from fpcad.run.limits import JointLimits
 from fpcad.run.link import Clock
 from fpcad.run.motor_map import MotorMap
+from fpcad.run.servo_driver import ENCODER_END
 
 Array = NDArray[np.float64]
 
@@ -148,7 +149,12 @@ class Homing:
         if self._stops() > 0:
             raise HeldByUser("homing stopped: the hand holds where it is; zeros are unknown")
         self._goal[joint] += step_rad
-        self._bus.write_goals(self._map.to_bus(self._goal))
+        goal = self._map.to_bus(self._goal)
+        least, greatest = self._bus.goal_range_rad
+        for name, value in zip(self._bus.names, goal, strict=True):
+            if not least <= value <= greatest:
+                raise self._failure(f"{name}: {ENCODER_END}")
+        self._bus.write_goals(goal)
         self._sleep(_PERIOD_S)
         return self._bus.read_state()
 

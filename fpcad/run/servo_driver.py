@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from fpcad.run.bus import BusState, ServoBus
 from fpcad.run.driver import Played, Sample, Watch
 from fpcad.run.errors import (
+    CalibrationError,
     CommandRefused,
     HeldByUser,
     LinkLost,
@@ -40,6 +41,10 @@ _LONGEST_STEP_S = 0.03
 """A host that was stalled goes on from where it was: path time slips, goals never jump."""
 WATCHDOG_S = 0.3
 _TRACKING_LIMIT_RAD = 0.15
+ENCODER_END = (
+    "its range crosses the end of its encoder; take the spool off, turn the motor half a turn, put the "
+    "spool on again, and calibrate"
+)
 _STRIKES = 2
 """Cycles in a row that make a fault of what may be noise."""
 _BRAKING_CYCLES = 100
@@ -79,10 +84,19 @@ class ServoDriver:
         """Torque on where the hand is; `clear` makes no difference, for nothing is latched here."""
         state = self._bus.read_state()
         self._map = self._map.settled(state.position_rad, self._limits)
+        self._require_room()
         self._bus.torque(True)
         self._bus.limit_torque(1.0)  # homing may have left less
         self._bus.watchdog(WATCHDOG_S)
         return self._sample(self._bus.read_state(), None, "READY")
+
+    def _require_room(self) -> None:
+        """Each motor's whole range must lie where its encoder counts on without a jump."""
+        least, greatest = self._bus.goal_range_rad
+        low, high = self._map.bus_range(self._limits)
+        for name, start, end in zip(self._bus.names, low, high, strict=True):
+            if start < least or end > greatest:
+                raise CalibrationError(f"{name}: {ENCODER_END}")
 
     def wait(self, until: Callable[[], bool], watch: Watch) -> None:
         """Hold still, watchdogs fed, while somebody puts the tool in."""

@@ -79,6 +79,13 @@ def test_a_joint_without_end_is_told():
         search.run()
 
 
+def test_an_encoder_that_ends_on_the_way_is_told():
+    bus, search = homing(mounting(2.0))
+    bus.goal_range_rad = (-np.pi, np.pi)
+    with pytest.raises(HomingError, match=r"_m\d: its range crosses the end of its encoder"):
+        search.run()
+
+
 def test_ctrl_c_holds_and_twice_lets_go():
     for wanted in (1, 2):
         seen = []

@@ -62,6 +62,12 @@ class ServoRegisterBus(ABC):
         """Torque of a motor for each mA [N m / mA]; its data sheet's stall values."""
         return self._wanted.stall_nm / self._wanted.stall_ma
 
+    @property
+    def goal_range_rad(self) -> tuple[float, float]:
+        """Least and greatest goal; beyond lies the end of the encoder."""
+        low, high = self.goal_counts
+        return (low - MIDDLE_COUNTS) * RAD_PER_COUNT, (high - MIDDLE_COUNTS) * RAD_PER_COUNT
+
     def open(self) -> None:
         self._registers = self._connect()
         try:
@@ -96,8 +102,7 @@ class ServoRegisterBus(ABC):
         )
 
     def write_goals(self, goal_rad: Array) -> None:
-        low, high = ((c - MIDDLE_COUNTS) * RAD_PER_COUNT for c in self.goal_counts)
-        goal = checked_goals(self.names, goal_rad, low, high)
+        goal = checked_goals(self.names, goal_rad, *self.goal_range_rad)
         self._watch()
         self._send_goals(np.rint(goal / RAD_PER_COUNT).astype(int) + MIDDLE_COUNTS)
 

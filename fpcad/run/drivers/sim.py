@@ -25,6 +25,7 @@ class SimBus:
 
     without_host = "Its simulated motors stop when they hear nothing."
     torque_per_ma = TORQUE_PER_MA
+    goal_range_rad = (-np.inf, np.inf)
 
     def __init__(
         self,

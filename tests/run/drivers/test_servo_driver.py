@@ -8,6 +8,7 @@ import pytest
 from fpcad.run.driver import Watch
 from fpcad.run.drivers.sim import SimBus
 from fpcad.run.errors import (
+    CalibrationError,
     CommandRefused,
     HeldByUser,
     LinkLost,
@@ -181,6 +182,17 @@ def test_after_power_came_back_a_turn_off_the_zeros_are_found(maker):
         bus.open()
         sample = ServoDriver(bus, motor_map(), hand_limits(), GUARDS).ready(clear=False)
         assert np.abs(sample.position_rad - bench.hand.joint_rad).max() < 0.01
+        bus.close()
+
+
+def test_a_spool_whose_range_crosses_the_encoders_end_is_not_moved():
+    with servo_bench("feetech", mounting(2.0)) as bench:
+        bus = servo_bus("feetech", bench.port)
+        bus.open()
+        driver = ServoDriver(bus, motor_map(mounting(2.0)), hand_limits(), GUARDS)
+        with pytest.raises(CalibrationError, match=r"thumb_m1: .*end of its encoder.*half a turn"):
+            driver.ready(clear=False)
+        assert not any(bench.torque_on(n) for n in range(1, 13))
         bus.close()
 
 
