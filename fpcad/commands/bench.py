@@ -92,7 +92,7 @@ class Bench:
                 bus.hand.lock(True)  # nobody can hold a simulated finger
             for name in names:
                 if not yes:
-                    typer.prompt(f"Hold the finger of {name} still, then press Enter", default="")
+                    typer.prompt(f"Hold the finger of {name} still, then hit Enter", default="")
                 found = self._pulls(bus, motors).slack(self.hand.motors.index(name))
                 verdict = "good" if found.slack_rad <= _TIGHT_RAD else "tighten its loop"
                 out.print(

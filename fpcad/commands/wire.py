@@ -79,7 +79,7 @@ def run_trajectory(
     design = spec_file(name)
     spec = load_spec(design)
     drive.known_driver(driver)
-    tool_in = drive.enter_pressed("Put the tool in, then press Enter.") if wait_for_tool else None
+    tool_in = drive.enter_pressed("Put the tool in, then hit Enter.") if wait_for_tool else None
     options = RunOptions(speed, loop, to_start, clear, log, tool_in=tool_in)
     file = drive.trajectory_file(build / spec.name, pose)
     hand = read_hand(spec, build / spec.name)

@@ -72,7 +72,7 @@ class PullTest:
             mine = [int(m) for m in moving if np.isnan(found[m])]
             if not mine:
                 continue
-            weak, strong = self._press(joint)
+            weak, strong = self._push(joint)
             turned = np.abs(strong.spool_rad - weak.spool_rad)
             torque = strong.torque_nm - weak.torque_nm
             for m in self._leading(joint, mine):
@@ -111,8 +111,8 @@ class PullTest:
         rows = np.abs(self._map.transmission.matrix)
         return [m for m in motors if column[m] >= rows[m].max() - 1e-9]
 
-    def _press(self, joint: int) -> tuple[Pull, Pull]:
-        """Press a joint on its upper end with both torques, then bring it back."""
+    def _push(self, joint: int) -> tuple[Pull, Pull]:
+        """Push a joint on its upper end with both torques, then bring it back."""
         rest = self._map.to_joints(self._bus.read_state().position_rad)
         goal = rest.copy()
         self._bus.limit_torque(SHARES[0])
