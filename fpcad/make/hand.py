@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
 
@@ -19,10 +19,9 @@ from fpcad.make.gates.all_gates import pass_gates
 from fpcad.make.gates.finding import Severity
 from fpcad.make.gates.table import FILE as CHECKS
 from fpcad.make.gates.table import findings_csv
-from fpcad.make.inertia import inertia_of
+from fpcad.make.inertia import link_inertia
 from fpcad.make.mesh import in_metres, stl_bytes
 from fpcad.make.parts.assembly import Assembly, Progress, make_assembly
-from fpcad.make.parts.part import Part
 from fpcad.make.trajectory import Trajectory
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.geometry import HandGeometry
@@ -62,12 +61,12 @@ def make_hand(
     files = write_parts(spec, assembly, geometry, folder, stamp)
     files.append(write_whole(folder / CHECKS, findings_csv(findings)))
     files += [
-        write_whole(out / "hand" / VISUAL_FOLDER / f"{p.name}.stl", stl_bytes(in_metres(p.mesh)))
+        write_whole(out / "hand" / VISUAL_FOLDER / f"{p.name}.stl", stl_bytes(in_metres(p.on_link)))
         for p in parts
     ]
-    robot = describe(spec, geometry, link_bodies(spec, parts), trajectories)
+    robot = describe(spec, geometry, link_bodies(spec, assembly), trajectories)
     files += write_description(robot, trajectories, out / "hand")
-    files.append(write_whole(out / "hand" / "transmission.yaml", transmission_yaml(spec)))
+    files.append(write_whole(out / "hand" / "transmission.yaml", transmission_yaml(spec, geometry)))
     return files
 
 
@@ -91,17 +90,17 @@ def write_parts(
     return [*files, write_whole(folder / "bom.csv", bom_csv(bill, stamp))]
 
 
-def link_bodies(spec: Spec, parts: Sequence[Part]) -> dict[str, LinkBody]:
-    """Inertia and visuals of each link, from the parts that it is made of."""
+def link_bodies(spec: Spec, assembly: Assembly) -> dict[str, LinkBody]:
+    """Inertia and visuals of each link, from the parts and bought items that it is made of."""
     density = {
         "endoskeleton": spec.print.bone_density_g_cm3,
         "skin": spec.print.skin_density_g_cm3,
     }
     bodies = {}
-    for link in dict.fromkeys(part.link for part in parts):
-        own = [part for part in parts if part.link == link]
+    for link in dict.fromkeys(part.link for part in assembly.parts):
+        own = [part for part in assembly.parts if part.link == link]
         bodies[link] = LinkBody(
-            inertia_of((part.mesh, density[part.material]) for part in own),
+            link_inertia(assembly, link, density),
             tuple((part.name, part.material) for part in own),
         )
     return bodies

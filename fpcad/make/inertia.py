@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
+from fpcad.make.parts.assembly import Assembly
 from fpcad.units import M_PER_MM
 
 Array = NDArray[np.float64]
@@ -23,6 +24,27 @@ class Inertia:
     mass_kg: float
     centre_m: Array  # (3,)
     tensor_kgm2: Array  # (3, 3) about the centre, axes of the link's frame
+
+
+def link_inertia(assembly: Assembly, link: str, density: Mapping[str, float]) -> Inertia:
+    """Inertia of one link from all that is printed and bought for it, each copy where it sits.
+
+    `density` [g/cm^3] by printed material. A bought item counts with the catalogue's mass, spread
+    evenly over its envelope.
+    """
+    bodies = [
+        (part.mesh.copy().apply_transform(T), density[part.material])
+        for part in assembly.parts
+        if part.link == link
+        for T in part.places
+    ]
+    bodies += [
+        (item.mesh.copy().apply_transform(T), item.mass_g * 1e3 / item.mesh.volume)
+        for item in assembly.bought
+        if item.link == link
+        for T in item.places
+    ]
+    return inertia_of(bodies)
 
 
 def inertia_of(bodies: Iterable[tuple[trimesh.Trimesh, float]]) -> Inertia:

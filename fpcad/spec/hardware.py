@@ -14,15 +14,15 @@ from fpcad.spec.wiring import Wiring
 class Transmission(SpecModel):
     """Tendon routing of one finger, the same for all."""
 
-    spool_radius_mm: Positive = 10.0
+    spool_radius_mm: Positive = 6.5
     """Radius of the motors' spools [mm]."""
-    input_pulley_radius_mm: Annotated[float, Field(gt=0, le=12)] = 10.0
+    input_pulley_radius_mm: Annotated[float, Field(gt=0, le=12)] = 6.5
     """Radius of the differential's two input pulleys, coaxial with flexion [mm]."""
-    output_pulley_radius_mm: Positive = 10.0
+    output_pulley_radius_mm: Positive = 6.0
     """Radius of the differential's output pulley, on the abduction axis [mm]."""
-    idler_radius_mm: NonNegative = 4.0
+    idler_radius_mm: NonNegative = 3.0
     """Radius of the idlers that lead the IP strands across the MCP joint [mm]."""
-    ip_pulley_radius_mm: Positive = 5.0
+    ip_pulley_radius_mm: Positive = 4.0
     """Radius of the IP joint's pulley [mm]."""
 
 
@@ -57,6 +57,10 @@ class Print(SpecModel):
     """Enlargement of the skin beyond the contact surface [mm], against imprecise control."""
     clearance_mm: Positive = 0.2
     """Gap between parts that move against each other [mm]."""
+    press_mm: Annotated[float, Field(ge=-0.2, le=0.5)] = 0.05
+    """What a printed hole is wider than the pin or bearing that it holds [mm]; try the coupon."""
+    slip_mm: Annotated[float, Field(ge=0.0, le=0.5)] = 0.15
+    """What a printed hole is wider than the pin that turns in it [mm]."""
     bone_density_g_cm3: Positive = 1.24
     """Density of the printed endoskeleton [g/cm^3]; PLA by default."""
     skin_density_g_cm3: Positive = 1.12

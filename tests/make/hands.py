@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fpcad.make.parts.assembly import make_parts
+from fpcad.make.parts.assembly import Assembly, make_assembly
 from fpcad.make.parts.part import Part
 from fpcad.model.geometry import HandGeometry, hand_geometry
 from fpcad.model.hand import hand_template
@@ -19,8 +19,8 @@ CLAY = load_spec(Path(__file__).parents[2] / "designs" / "clay.yaml")
 TEMPLATE = hand_template(CLAY.hand)
 CENTRE = (42.5, 85.0, 30.0, 16.0, 75.0, 0.0)
 CORNERS = (
-    (30.0, 50.0, 20.0, 18.0, 120.0, 0.0),
-    (55.0, 120.0, 20.0, 12.0, 30.0, -60.0),
+    (30.0, 50.0, 21.0, 18.0, 120.0, 0.0),
+    (55.0, 120.0, 20.5, 12.2, 30.0, -60.0),
     (42.0, 60.0, 22.0, 20.0, 120.0, 60.0),
     (30.0, 120.0, 40.0, 20.0, 60.0, 30.0),
 )
@@ -39,9 +39,14 @@ def geometry_of(values: tuple[float, ...], spec: Spec = CLAY) -> HandGeometry:
 
 
 @cache
+def assembly_of(values: tuple[float, ...]) -> Assembly:
+    """Clay's hand for d1 to d6 [mm, deg], made once: solid modelling takes seconds."""
+    return make_assembly(CLAY, geometry_of(values), lambda _: None)
+
+
 def parts_of(values: tuple[float, ...]) -> list[Part]:
-    """Clay's parts for d1 to d6 [mm, deg], made once: solid modelling takes seconds."""
-    return make_parts(CLAY, geometry_of(values), lambda _: None)
+    """Its printed parts."""
+    return list(assembly_of(values).parts)
 
 
 def with_print(**settings: object) -> Spec:

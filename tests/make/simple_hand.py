@@ -18,7 +18,7 @@ from fpcad.make.trajectory import ToolMotion, Trajectory
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.geometry import HandGeometry
 from fpcad.store import write_whole
-from tests.make.hands import CLAY, TEMPLATE, geometry_of
+from tests.make.hands import CENTRE, CLAY, TEMPLATE, geometry_of
 
 Array = NDArray[np.float64]
 
@@ -71,7 +71,7 @@ def write_simple_hand(values: tuple[float, ...], hand: Path) -> Path:
     for name, mesh in simple_meshes(geometry_of(values)).items():
         write_whole(hand / "meshes" / "visual" / f"{name}.stl", stl_bytes(in_metres(mesh)))
     write_description(simple_robot(values), TRAJECTORIES, hand)
-    write_whole(hand / "transmission.yaml", transmission_yaml(CLAY))
+    write_whole(hand / "transmission.yaml", transmission_yaml(CLAY, geometry_of(CENTRE)))
     return hand
 
 

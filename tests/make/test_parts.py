@@ -11,9 +11,9 @@ import trimesh
 from fpcad.errors import FpcadError
 from fpcad.make.mesh import mesh_of
 from fpcad.make.parts.dimensions import finger_dimensions
-from fpcad.make.parts.mcp import PIN_BOTTOM_MM
-from fpcad.make.parts.skin import distal_skin
-from fpcad.make.parts.solids import ball
+from fpcad.make.parts.interlock import LUG_MM, WIDTH_SHARE, lug_range
+from fpcad.make.parts.skin import distal_skin, open_share
+from fpcad.make.parts.solids import ball, capsule, finger_core
 from tests.make.hands import CENTRE, CLAY, CORNERS, geometry_of, parts_of, with_print
 
 DIMENSIONS = finger_dimensions(CLAY, geometry_of(CENTRE))
@@ -34,6 +34,9 @@ def test_fingers_share_their_parts(clay_parts):
     assert {name: part.count for name, part in clay_parts.items()} == {
         "palm": 1,
         "mcp_cross": 4,
+        "input_pulley": 8,
+        "idler_pulley": 4,
+        "ip_drum": 4,
         "proximal_bone": 4,
         "proximal_skin": 4,
         "distal_bone": 4,
@@ -51,10 +54,19 @@ def bend_moment(outer: float, inner: float) -> float:
     return 2 / 3 * (outer**3 - inner**3)
 
 
+def lugs_volume(link: str) -> float:
+    """Volume of both lugs of a skin: from a flat inside the bone out to the bore."""
+    d, (low, high) = DIMENSIONS, lug_range(DIMENSIONS, link)
+    half, bore = WIDTH_SHARE * d.bone / 2, d.skin_inner
+    segment = half * math.sqrt(bore**2 - half**2) + bore**2 * math.asin(half / bore)
+    return 2 * (high - low) * (segment - 2 * half * (d.bone - LUG_MM))
+
+
 def test_proximal_skin_has_its_closed_form_volume(clay_parts):
     d = DIMENSIONS
     length = d.proximal_length - d.clearance - d.shaft_start
-    expected = bent_ring_volume(d.skin_outer, d.skin_inner, length, d.ip_flex[1] / 2)
+    sleeve = bent_ring_volume(d.skin_outer, d.skin_inner, length, d.ip_flex[1] / 2)
+    expected = sleeve + lugs_volume("proximal")
     assert clay_parts["proximal_skin"].solid.Volume() == pytest.approx(expected, rel=1e-6)
 
 
@@ -64,15 +76,17 @@ def test_distal_skin_has_its_closed_form_volume(clay_parts):
         d.skin_outer, d.skin_inner, d.distal_axis_length - d.clearance, d.ip_flex[1] / 2
     )
     cap = 2 / 3 * math.pi * (d.skin_outer**3 - d.skin_inner**3)
-    assert clay_parts["distal_skin"].solid.Volume() == pytest.approx(tube + cap, rel=1e-6)
+    expected = tube + cap + lugs_volume("distal")
+    assert clay_parts["distal_skin"].solid.Volume() == pytest.approx(expected, rel=1e-6)
 
 
-def test_cross_is_a_cube_less_its_pin_holes(clay_parts):
-    d = DIMENSIONS
-    section = math.pi * d.pin_hole**2
-    holes = section * 2 * d.hub + 2 * section * (d.hub - d.pin_hole - PIN_BOTTOM_MM)
-    expected = (2 * d.hub) ** 3 - holes
-    assert clay_parts["mcp_cross"].solid.Volume() == pytest.approx(expected, rel=1e-6)
+def test_capsules_have_their_closed_form_volume_and_area():
+    whole, half = capsule((0, 0, 0), (20, 0, 0), 5.0), finger_core(20.0, 5.0)
+    volume, side = math.pi * 25 * 20 + 4 / 3 * math.pi * 125, 2 * math.pi * 5 * 20
+    assert whole.Volume() == pytest.approx(volume, rel=1e-9)
+    assert whole.Area() == pytest.approx(side + 4 * math.pi * 25, rel=1e-9)
+    assert half.Volume() == pytest.approx(volume - 2 / 3 * math.pi * 125, rel=1e-9)
+    assert half.Area() == pytest.approx(side + 3 * math.pi * 25, rel=1e-9)
 
 
 def contact_points(link: str, edge_mm: float) -> np.ndarray:
@@ -98,6 +112,21 @@ def test_skin_is_the_contact_capsule(clay_parts, link):
     points = contact_points(link, edge_mm=1.0)
     _, distance, _ = trimesh.proximity.closest_point(clay_parts[f"{link}_skin"].mesh, points)
     assert distance.max() <= 0.05
+
+
+@pytest.mark.parametrize("link", ["proximal", "distal"])
+def test_no_skin_stands_out_of_the_capsule_or_back_from_it(clay_parts, link):
+    vertices, d = np.asarray(clay_parts[f"{link}_skin"].mesh.vertices), DIMENSIONS
+    end = d.distal_axis_length if link == "distal" else d.proximal_length
+    foot = np.clip(vertices[:, 0], 0.0, end)
+    radius = np.linalg.norm(vertices - np.outer(foot, (1.0, 0.0, 0.0)), axis=1)
+    outside = radius > (d.skin_inner + d.skin_outer) / 2
+    assert np.abs(radius[outside] - d.skin_outer).max() <= 0.05
+
+
+@pytest.mark.parametrize("values", [CENTRE, *CORNERS], ids=str)
+def test_a_quarter_of_a_finger_at_most_is_bare(values):
+    assert open_share(finger_dimensions(CLAY, geometry_of(values))) <= 0.25
 
 
 def test_oversize_lifts_the_skin():
@@ -130,7 +159,7 @@ def test_corners_of_the_design_space_can_be_made(values):
 
 
 def test_thick_skin_leaves_no_room_for_the_bone():
-    with pytest.raises(FpcadError, match="finger: skin and clearance leave a bone of radius"):
+    with pytest.raises(FpcadError, match=r"bearing BUSH-2 needs 20\.1 mm, finger is 16\.0 mm"):
         finger_dimensions(with_print(skin_thickness_mm=6.0), geometry_of(CENTRE))
 
 

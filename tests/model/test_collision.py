@@ -57,7 +57,8 @@ def segments(at: Posture) -> dict[str, tuple[Array, Array, float]]:
         a, b = (hand.p + hand.R @ (roots[end] + up) for end in ends)
         found[name] = (a, b, 9.0)
     for finger, root in roots.items():
-        found[f"{finger}_mcp"] = (hand.p + hand.R @ root, hand.p + hand.R @ root, 12.0)
+        centre = hand.p + hand.R @ (root + up / 3)
+        found[f"{finger}_mcp"] = (centre, centre, 15.0)
     along = np.array([np.cos(at.turn), np.sin(at.turn), 0.0])
     found["tool"] = (-80 * along, 80 * along, 6.0)
     return found

@@ -124,8 +124,8 @@ class TestDemand:
         worst = np.abs(both).max(axis=(0, 1)) / 1000
         assert list(demand.joint_torque_nm.values()) == pytest.approx(worst.tolist())
         assert list(demand.joint_torque_nm) == ["mcp_flex", "mcp_abd", "ip_flex"]
-        # Clay's rows of A are [1, 1, 0], [1, -1, 0], [0.4, 0, 0.5]; tau_q = A' tau_m.
-        A = np.array([[1, 1, 0], [1, -1, 0], [0.4, 0, 0.5]])
+        # Clay's rows of A are [1, 12/13, 0], [1, -12/13, 0], [6/13, 0, 8/13]; tau_q = A' tau_m.
+        A = np.array([[13, 12, 0], [13, -12, 0], [6, 0, 8]]) / 13
         at_motors = [np.linalg.solve(A.T, finger) for fingers in both for finger in fingers]
         assert demand.motor_torque_nm == pytest.approx(np.abs(at_motors).max() / 1000)
 
@@ -136,7 +136,9 @@ class TestDemand:
         given = torque_demand(
             bench, "carve", first_hand.design, wielding["carve"].path
         ).motor_joint_torque_nm
-        assert given == pytest.approx({"mcp_flex": 1.8, "mcp_abd": 1.8, "ip_flex": 0.45})
+        assert given == pytest.approx(
+            {"mcp_flex": 1.8, "mcp_abd": 1.8 * 12 / 13, "ip_flex": 0.9 * 8 / 13}
+        )
 
     def test_becomes_plain_json(self, bench: Workbench, first_hand, wielding):
         demand = torque_demand(bench, "carve", first_hand.design, wielding["carve"].path)

@@ -2,52 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
 
+import numpy as np
 import trimesh
+from scipy.spatial.transform import Rotation
 
+from fpcad.errors import MakeError
 from fpcad.make.mesh import mesh_of
 from fpcad.make.parts.bone import distal_bone, proximal_bone
+from fpcad.make.parts.bought import BoughtItem, finger_items
+from fpcad.make.parts.differential import idler_pulley, input_pulley, ip_drum, mcp_cross
 from fpcad.make.parts.dimensions import Dimensions, finger_dimensions
-from fpcad.make.parts.mcp import mcp_cross
-from fpcad.make.parts.palm import palm_solid
-from fpcad.make.parts.part import Array, Material, Part, Placement, placements
+from fpcad.make.parts.palm import MOUNT_INSETS_MM, palm_solid
+from fpcad.make.parts.part import FIXED_LINK, Array, Material, Part, in_place
 from fpcad.make.parts.skin import distal_skin, proximal_skin
 from fpcad.make.parts.solids import Solid
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
 
+__all__ = ["Assembly", "BoughtItem", "Progress", "make_assembly", "make_parts"]
+
+SKIN_MESH = {"mesh_tolerance_mm": 0.02, "mesh_angle_deg": 5.7}
+"""Skins are meshed finer than the rest: their surface is what touches the tool."""
+
+log = logging.getLogger(__name__)
+
 Progress = Callable[[str], None]
 """Told what is being made, in a few words."""
-
-
-@dataclass(frozen=True)
-class BoughtItem:
-    """One kind of bought item on one link: bearing, pin, screw, insert, motor, tube."""
-
-    name: str
-    """What it does, such as `ip_bearing`."""
-    kind: str
-    """Table of the catalogue: `bearings`, `pins`, `screws`, `inserts`, `motors`, `tubes`."""
-    size: str
-    """Row of that table, such as `MR63`."""
-    link: str
-    """`palm`, or the link of every finger that carries it."""
-    places: tuple[Array, ...]
-    """T_link_item (4, 4) [mm] of each copy on one link; the item's axis is z of its own frame."""
-    count: int
-    """How many of it a hand needs."""
-    mass_g: float
-    """Of one piece."""
-    mesh: trimesh.Trimesh
-    """[mm] in the item's frame: its envelope, for interference checks and pictures."""
-    length_mm: float | None = None
-    """Length of a pin, screw or tube that comes in lengths."""
-
-    def placements(self, fingers: Iterable[str]) -> list[Placement]:
-        """Where each copy in the hand sits."""
-        return placements(self.link, self.places, fingers)
 
 
 @dataclass(frozen=True)
@@ -60,23 +45,69 @@ class Assembly:
 
 def make_assembly(spec: Spec, geometry: HandGeometry, progress: Progress) -> Assembly:
     """Everything of a hand; raises :class:`fpcad.errors.MakeError` with the reason otherwise."""
-    return Assembly(tuple(make_parts(spec, geometry, progress)), ())
+    items = finger_items(finger_dimensions(spec, geometry), len(geometry.fingers))
+    return Assembly(tuple(make_parts(spec, geometry, progress)), items)
 
 
 def make_parts(spec: Spec, geometry: HandGeometry, progress: Progress) -> list[Part]:
     """All printed parts of a hand; parts that fingers share are made once."""
     d, fingers = finger_dimensions(spec, geometry), len(geometry.fingers)
-    makers: list[tuple[str, str, Material, int, Callable[[Dimensions], Solid]]] = [
-        ("palm", "palm", "endoskeleton", 1, lambda d: palm_solid(geometry, d)),
-        ("mcp_cross", "mcp", "endoskeleton", fingers, mcp_cross),
-        ("proximal_bone", "proximal", "endoskeleton", fingers, proximal_bone),
-        ("proximal_skin", "proximal", "skin", fingers, proximal_skin),
-        ("distal_bone", "distal", "endoskeleton", fingers, distal_bone),
-        ("distal_skin", "distal", "skin", fingers, distal_skin),
-    ]
     parts = []
-    for name, link, material, count, make in makers:
-        progress(name)
-        solid = make(d)
-        parts.append(Part(name, link, material, count, solid, mesh_of(name, solid, spec.print)))
+    for plan in _plans(geometry):
+        progress(plan.name)
+        solid, mesh = _made(plan, d, spec)
+        count = len(plan.places) * (1 if plan.link == FIXED_LINK else fingers)
+        parts.append(
+            Part(plan.name, plan.link, plan.material, count, solid, mesh, plan.places, plan.T_bed)
+        )
     return parts
+
+
+def _made(plan: _Plan, d: Dimensions, spec: Spec) -> tuple[Solid, trimesh.Trimesh]:
+    """A part's solid and mesh by the first of its makers whose result is sound."""
+    settings = spec.print.model_copy(update=SKIN_MESH) if plan.material == "skin" else spec.print
+    for make in plan.makers[:-1]:
+        try:
+            solid = make(d)
+            return solid, mesh_of(plan.name, solid, settings)
+        except MakeError as error:
+            log.debug("%s: %s; another inset is tried", plan.name, error)
+    solid = plan.makers[-1](d)
+    return solid, mesh_of(plan.name, solid, settings)
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """How one part is made, where its copies sit on their link, and how it is printed."""
+
+    name: str
+    link: str
+    material: Material
+    makers: tuple[Callable[[Dimensions], Solid], ...]
+    """Mostly one; the palm has more, because nearly touching surfaces can break solid modelling."""
+    places: tuple[Array, ...] = field(default_factory=in_place)
+    T_bed: Array = field(default_factory=lambda: np.eye(4))
+
+
+def _plans(geometry: HandGeometry) -> list[_Plan]:
+    axis_up, on_end = turned("x", 90.0), turned("y", 90.0)
+    palms = tuple(partial(palm_solid, geometry, inset=inset) for inset in MOUNT_INSETS_MM)
+    both_sides = (np.eye(4), turned("z", 180.0))
+    return [
+        _Plan("palm", "palm", "endoskeleton", palms, T_bed=turned("x", 180.0)),
+        _Plan("mcp_cross", "mcp", "endoskeleton", (mcp_cross,), T_bed=on_end),
+        _Plan("input_pulley", "mcp", "endoskeleton", (input_pulley,), both_sides, axis_up),
+        _Plan("idler_pulley", "mcp", "endoskeleton", (idler_pulley,)),
+        _Plan("ip_drum", "mcp", "endoskeleton", (ip_drum,), T_bed=axis_up),
+        _Plan("proximal_bone", "proximal", "endoskeleton", (proximal_bone,), T_bed=axis_up),
+        _Plan("proximal_skin", "proximal", "skin", (proximal_skin,), T_bed=on_end),
+        _Plan("distal_bone", "distal", "endoskeleton", (distal_bone,), T_bed=axis_up),
+        _Plan("distal_skin", "distal", "skin", (distal_skin,), T_bed=on_end),
+    ]
+
+
+def turned(axis: str, degrees: float) -> Array:
+    """Pose (4, 4) that only turns, about a coordinate axis."""
+    pose = np.eye(4)
+    pose[:3, :3] = Rotation.from_euler(axis, degrees, degrees=True).as_matrix()
+    return pose

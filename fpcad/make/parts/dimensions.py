@@ -6,14 +6,20 @@ import math
 from dataclasses import dataclass
 
 from fpcad.errors import MakeError
+from fpcad.make.parts import mcp_dimensions as mcp
+from fpcad.make.parts.catalogue import Bearing, lookup
+from fpcad.make.parts.knuckle import Knuckle, finger_needed, knuckle
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.base import Interval
 from fpcad.spec.schema import Spec
 from fpcad.units import RAD_PER_DEG
 
-PIN_RADIUS_MM = 1.0
-PIN_WALL_MM = 0.8  # two lines of a common 0.4 mm nozzle around a pin's hole
-LEAST_ROOT_RADIUS_MM = 10.0  # below it the MCP cross has no room for its pins
+CHANNEL_GAP_MM = 0.3
+"""What a tendon's channel is wider than the tendon, in radius."""
+PULLEY_RIM_MM = 0.15
+"""What the IP pulley's rim stands out beyond the strand's core."""
+ANCHOR_MARGIN_RAD = math.radians(12.0)
+"""Wrap that a strand keeps before its anchor, at the end of its range."""
 
 
 @dataclass(frozen=True)
@@ -34,54 +40,13 @@ class Dimensions:
     """Radius of the sphere around the root in which the MCP joint lies."""
     clearance: float
     """Gap between parts that move against each other."""
+    ip_pulley: float
+    """Pitch radius of the IP joint's pulley."""
+    knuckle: Knuckle
+    mcp: mcp.Mcp
     mcp_flex: Interval
     mcp_abd: Interval
     ip_flex: Interval
-
-    @property
-    def pin_hole(self) -> float:
-        """Radius of the pins' holes."""
-        return PIN_RADIUS_MM + self.clearance / 2
-
-    @property
-    def ip_disc(self) -> float:
-        """Radius of the knuckle's discs around the IP axis."""
-        return 0.7 * self.bone
-
-    @property
-    def ip_half_width(self) -> float:
-        """Half width of the knuckle: the discs just stay inside the bore of either skin."""
-        return math.sqrt(self.bone**2 - self.ip_disc**2)
-
-    @property
-    def tongue_half_width(self) -> float:
-        """Half width of the distal bone's tongue between the proximal bone's prongs."""
-        return 0.5 * self.ip_half_width - self.clearance
-
-    @property
-    def hub(self) -> float:
-        """Half edge of the MCP cross; radius of the discs of the proximal bone's fork."""
-        return self.root / 3
-
-    @property
-    def fork_inner(self) -> float:
-        """Distance of the fork's prongs from the flexion plane."""
-        return self.hub + self.clearance
-
-    @property
-    def fork_outer(self) -> float:
-        """Outer distance of the fork's prongs from the flexion plane."""
-        return self.fork_inner + self.root / 4
-
-    @property
-    def neck_half_width(self) -> float:
-        """Half width of the proximal bone where it passes between the palm's ears."""
-        return min(0.65 * self.bone, self.hub)
-
-    @property
-    def neck_start(self) -> float:
-        """Distance from the root beyond which the neck is clear of the abducting cross."""
-        return math.sqrt(2) * self.hub + self.clearance
 
     @property
     def shaft_start(self) -> float:
@@ -89,55 +54,150 @@ class Dimensions:
         return self.root + self.clearance
 
     @property
-    def mcp_cavity(self) -> float:
-        """Radius about the flexion axis of all that turns inside the palm's ears."""
-        return math.hypot(self.fork_outer, self.hub) + self.clearance
+    def widest_abduction(self) -> float:
+        """Largest abduction to either side [rad]."""
+        return max(abs(angle) for angle in self.mcp_abd)
+
+    @property
+    def channel(self) -> float:
+        """Radius of a tendon's channel."""
+        return self.mcp.strand + CHANNEL_GAP_MM
 
 
 def finger_dimensions(spec: Spec, geometry: HandGeometry) -> Dimensions:
     """Dimensions of a hand's fingers; raises :class:`MakeError` when a part has no room."""
+    found = reasons(spec, geometry)
+    if found:
+        raise MakeError(f"finger: {found[0]}")
     settings, radius = spec.print, geometry.radius_mm
-    limits = {
-        joint: (low * RAD_PER_DEG, high * RAD_PER_DEG)
-        for joint, (low, high) in spec.hand.joint_limits_deg.items()
-    }
-    dimensions = Dimensions(
+    limits = _limits(spec)
+    bone = _bone(spec, geometry)
+    joint = knuckle(bone, settings.clearance_mm)
+    assert joint is not None  # told by reasons otherwise
+    return Dimensions(
         proximal_length=geometry.proximal_length_mm,
         distal_axis_length=geometry.distal_length_mm - radius,
         skin_outer=radius + settings.skin_oversize_mm,
         skin_inner=radius - settings.skin_thickness_mm,
-        bone=radius - settings.skin_thickness_mm - settings.clearance_mm,
-        root=_root_radius(geometry),
+        bone=bone,
+        root=min(_root_radii(geometry).values()),
         clearance=settings.clearance_mm,
+        ip_pulley=spec.motors.transmission.ip_pulley_radius_mm,
+        knuckle=joint,
+        mcp=mcp.mcp_dimensions(spec.motors.transmission, settings),
         mcp_flex=limits["mcp_flex"],
         mcp_abd=limits["mcp_abd"],
         ip_flex=limits["ip_flex"],
     )
-    _check_room(dimensions)
-    return dimensions
 
 
-def _root_radius(geometry: HandGeometry) -> float:
-    radii = {shape.finger: shape.radius_mm for shape in geometry.palm if shape.finger}
+def reasons(spec: Spec, geometry: HandGeometry) -> list[str]:
+    """Why a hand cannot hold its hardware, in figures; nothing where it can. No solid is modelled."""
+    bone = _bone(spec, geometry)
+    return [
+        *_knuckle_reasons(spec, geometry, bone),
+        *_pulley_reasons(spec, bone),
+        *_root_reasons(spec, geometry),
+        *_link_reasons(spec, geometry),
+    ]
+
+
+def _bone(spec: Spec, geometry: HandGeometry) -> float:
+    return geometry.radius_mm - spec.print.skin_thickness_mm - spec.print.clearance_mm
+
+
+def _limits(spec: Spec) -> dict[str, Interval]:
+    return {
+        joint: (low * RAD_PER_DEG, high * RAD_PER_DEG)
+        for joint, (low, high) in spec.hand.joint_limits_deg.items()
+    }
+
+
+def _knuckle_reasons(spec: Spec, geometry: HandGeometry, bone: float) -> list[str]:
+    settings = spec.print
+    if knuckle(bone, settings.clearance_mm) is not None:
+        return []
+    smallest = lookup("bearings", Bearing, "BUSH-2")
+    needs = finger_needed(smallest, settings.clearance_mm, settings.skin_thickness_mm)
+    return [
+        f"bearing {smallest.size} needs {needs:.1f} mm, finger is {2 * geometry.radius_mm:.1f} mm"
+    ]
+
+
+def _pulley_reasons(spec: Spec, bone: float) -> list[str]:
+    routing, found = spec.motors.transmission, []
+    strand = mcp.mcp_dimensions(routing, spec.print).strand
+    around = 2 * (spec.print.skin_thickness_mm + spec.print.clearance_mm)
+    needs = 2 * (routing.ip_pulley_radius_mm + PULLEY_RIM_MM) + around
+    if needs > 2 * bone + around + 1e-9:
+        found.append(
+            f"IP pulley of radius {routing.ip_pulley_radius_mm:g} mm needs {needs:.1f} mm, "
+            f"finger is {2 * bone + around:.1f} mm"
+        )
+    joint = knuckle(bone, spec.print.clearance_mm)
+    if joint is not None:
+        room = routing.ip_pulley_radius_mm - strand - joint.bearing.bore_mm / 2
+        if room < 0.8:
+            found.append(f"IP pulley leaves {room:.2f} mm around its pin, 0.8 mm are needed")
+    span = _limits(spec)["ip_flex"]
+    turn = routing.ip_pulley_radius_mm / max(routing.idler_radius_mm, 1e-9) * (span[1] - span[0])
+    if turn > math.pi - 2 * ANCHOR_MARGIN_RAD:
+        found.append(
+            f"the drum across the MCP joint turns {math.degrees(turn):.0f} deg for the IP joint, "
+            f"its groove takes up {math.degrees(math.pi - 2 * ANCHOR_MARGIN_RAD):.0f} deg"
+        )
+    return found
+
+
+def _root_reasons(spec: Spec, geometry: HandGeometry) -> list[str]:
+    radii, found = _root_radii(geometry), []
+    sizes = mcp.mcp_dimensions(spec.motors.transmission, spec.print)
+    low, high = _limits(spec)["mcp_abd"]
     for finger in geometry.fingers:
-        if radii.get(finger, 0.0) < LEAST_ROOT_RADIUS_MM:
-            raise MakeError(
-                f"hand.palm: {finger} has no sphere of at least {LEAST_ROOT_RADIUS_MM:g} mm at "
-                f"its root, where its MCP joint must fit"
+        if finger not in radii:
+            found.append(f"hand.palm: {finger} has no sphere at its root for its MCP joint")
+    if radii:
+        found += mcp.reasons(sizes, min(radii.values()), max(abs(low), abs(high)))
+    for a, b, apart in _neighbours(geometry):
+        if apart < 2 * sizes.widest_half:
+            found.append(
+                f"the MCP joints of {a} and {b} need {2 * sizes.widest_half:.1f} mm between roots, "
+                f"they are {apart:.1f} mm apart"
             )
-    return min(radii[finger] for finger in geometry.fingers)
+    return found
 
 
-def _check_room(dimensions: Dimensions) -> None:
-    least = (dimensions.pin_hole + PIN_WALL_MM) / 0.7
-    if dimensions.bone < least:
-        raise MakeError(
-            f"finger: skin and clearance leave a bone of radius {dimensions.bone:g} mm; "
-            f"the IP pin needs {least:.2f} mm"
-        )
-    bend = dimensions.skin_outer * math.tan(dimensions.ip_flex[1] / 2)
-    if dimensions.proximal_length - bend < dimensions.shaft_start + 1.0:
-        raise MakeError(
-            f"finger: at full IP flexion the bend plane leaves no proximal skin between "
-            f"{dimensions.shaft_start:g} mm and {dimensions.proximal_length - bend:.2f} mm"
-        )
+def _root_radii(geometry: HandGeometry) -> dict[str, float]:
+    """Radius [mm] about each finger's root that lies wholly in its sphere: all of its MCP joint turns there."""
+    return {
+        shape.finger: shape.radius_mm
+        - math.dist(shape.start_mm, geometry.T_palm_root[shape.finger][:3, 3])
+        for shape in geometry.palm
+        if shape.finger
+    }
+
+
+def _neighbours(geometry: HandGeometry) -> list[tuple[str, str, float]]:
+    """Fingers whose flexion axes lie side by side on one line, and the distance of their roots."""
+    found = []
+    poses = geometry.T_palm_root
+    for a in geometry.fingers:
+        for b in geometry.fingers:
+            step = poses[b][:3, 3] - poses[a][:3, 3]
+            along = float(step @ poses[a][:3, 1])
+            if along > 0 and abs(along) > 0.99 * math.hypot(*step):
+                found.append((a, b, along))
+    nearest = sorted(found, key=lambda pair: pair[2])
+    return [pair for pair in nearest if pair[2] < 1.5 * nearest[0][2]]
+
+
+def _link_reasons(spec: Spec, geometry: HandGeometry) -> list[str]:
+    radius = geometry.radius_mm + spec.print.skin_oversize_mm
+    start = min(_root_radii(geometry).values(), default=0.0) + spec.print.clearance_mm
+    end = geometry.proximal_length_mm - radius * math.tan(_limits(spec)["ip_flex"][1] / 2)
+    if end < start + 1.0:
+        return [
+            f"at full IP flexion the bend plane leaves no proximal skin between {start:.1f} mm "
+            f"and {end:.2f} mm"
+        ]
+    return []

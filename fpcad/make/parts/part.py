@@ -59,6 +59,11 @@ class Part:
     T_bed_part: Array = field(default_factory=lambda: np.eye(4))
     """(4, 4) rotation to the proposed print orientation, z up; drop it to z = 0 before slicing."""
 
+    @property
+    def on_link(self) -> trimesh.Trimesh:
+        """Mesh [mm] of all copies on one link, in the link's frame."""
+        return trimesh.util.concatenate([self.mesh.copy().apply_transform(T) for T in self.places])
+
     def placements(self, fingers: Iterable[str]) -> list[Placement]:
         """Where each copy in the hand sits."""
         return placements(self.link, self.places, fingers)

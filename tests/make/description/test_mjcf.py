@@ -12,7 +12,7 @@ from fpcad.make.preload.stiffness import hand_stiffness
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.spec.catalogue import motor
 from tests.make.description.engine import mujoco
-from tests.make.hands import CENTRE, CLAY
+from tests.make.hands import CENTRE, CLAY, geometry_of
 from tests.make.simple_hand import JOINTS, TRAJECTORIES
 
 SECOND = 500
@@ -39,7 +39,7 @@ def settle(model: Any, command: np.ndarray, steps: int = SECOND) -> Any:
 
 
 def test_motors_pull_joints_by_the_rows_of_the_transmission_file(hand):
-    file = YAML(typ="safe").load(transmission_yaml(CLAY))
+    file = YAML(typ="safe").load(transmission_yaml(CLAY, geometry_of(CENTRE)))
     data = mujoco.MjData(hand)
     data.qpos[:] = np.random.default_rng(1).normal(size=hand.nq)
     mujoco.mj_forward(hand, data)

@@ -19,7 +19,7 @@ from fpcad.make.inertia import inertia_of
 from fpcad.make.primitives import pose_along, roll_pitch_yaw
 from fpcad.model.geometry import link_poses
 from fpcad.spec.catalogue import motor
-from tests.make.hands import CENTRE, CLAY, CORNERS, TEMPLATE, design, geometry_of
+from tests.make.hands import CENTRE, CLAY, CORNERS, TEMPLATE, assembly_of, design, geometry_of
 
 NAMES = TEMPLATE.names
 JOINTS = [f"{finger}_{joint}" for finger in NAMES.fingers for joint in NAMES.joints]
@@ -68,7 +68,7 @@ def pinocchio_error(text: str, values: tuple[float, ...], joints: np.ndarray) ->
 
 @pytest.mark.parametrize("values", [CENTRE, *CORNERS, (42.5, 85, 30, 16, 90, 45)], ids=str)
 def test_pinocchio_finds_the_models_links(clay_parts, values):
-    bodies = link_bodies(CLAY, list(clay_parts.values()))
+    bodies = link_bodies(CLAY, assembly_of(CENTRE))
     text = urdf_text(describe(CLAY, geometry_of(values), bodies, {}))
     for seed in range(5):
         assert pinocchio_error(text, values, random_joints(seed)) <= 1e-9
@@ -77,13 +77,13 @@ def test_pinocchio_finds_the_models_links(clay_parts, values):
 def test_limits_are_the_specs_and_the_motors(clay_hand):
     row = motor(CLAY.motors.type)
     robot = yourdfpy.URDF.load(str(urdf_file(clay_hand)), load_meshes=False)
-    for name, torque in (("mcp_flex", 2.0), ("mcp_abd", 2.0), ("ip_flex", 0.5)):
+    for name, torque in (("mcp_flex", 2.0), ("mcp_abd", 24 / 13), ("ip_flex", 8 / 13)):
         limit = robot.joint_map[f"ring_{name}"].limit
         assert np.rad2deg([limit.lower, limit.upper]) == pytest.approx(
             CLAY.hand.joint_limits_deg[name]
         )
         assert limit.effort == pytest.approx(torque * row.continuous_torque_nm)
-    assert limit.velocity == pytest.approx(2.0 * row.no_load_speed_rad_s)
+    assert limit.velocity == pytest.approx(13 / 8 * row.no_load_speed_rad_s)
 
 
 def test_inertias_belong_to_real_bodies(clay_hand):
