@@ -68,7 +68,7 @@ page: ## Build the report's script from fpcad/look/page/src; needs Node.js and n
 firmware: ## Build the firmware for this machine, which `fpcad run-trajectory --port fw` starts.
 	$(MAKE) -C firmware_host host
 
-soak: $(TESTABLE) firmware ## Run the long tests of link and firmware, some ten minutes; results go to the screen.
+soak: $(TESTABLE) firmware ## Run the long tests of link and firmware, some twenty minutes; results go to the screen.
 	$(BIN)/python -m pytest -s $(wildcard tests/soak/soak_*.py) $(ARGS)
 
 system-packages: ## Tell which system libraries are missing on Debian or Ubuntu, and how to get them.
