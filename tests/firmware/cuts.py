@@ -62,7 +62,7 @@ class Cuts:
         line = _line(cut, direction, loud)
         broke_at, stands_at = [], []
 
-        def note(line: CutLine) -> None:
+        def note(line: VirtualLine) -> None:
             if not line.connected and not broke_at:
                 broke_at.append(line.now_s)
             stands = line.device.state is not State.RUNNING and line.device.follower.rate == 0

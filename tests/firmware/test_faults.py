@@ -73,16 +73,17 @@ def test_a_failing_motor_is_a_fault_within_20_ms(mishap, setup, cause):
 
 def test_too_much_current_is_a_fault_within_20_ms():
     line = VirtualLine(core_controller(current_ma=300))
-    seen = {}
+    seen, jam = {}, at(1.0, lambda line: line.device.mishap(JAM, 3))
 
     def note(line):
+        jam(line)
         device = line.device
         if np.abs(device.look().current_ma).max() > 300:
             seen.setdefault("strained", line.now_s)
         if device.state is State.FAULT:
             seen.setdefault("fault", line.now_s)
 
-    line.on_tick = lambda line: (at(1.0, lambda line: line.device.mishap(JAM, 3))(line), note(line))
+    line.on_tick = note
     with pytest.raises(ControllerFault, match="current"):
         run(line, MOTION)
     line.let_pass(0.2)
