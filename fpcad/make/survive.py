@@ -8,16 +8,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
+from fpcad.make.carried import moved_hands, registered, tool_ends, tool_frames
 from fpcad.make.gates.bodies import link_poses
 from fpcad.make.grip import ContactLink, link_axis, segment_distance
 from fpcad.model.equilibrium import least_torque
 from fpcad.model.geometry import hand_geometry
 from fpcad.solve.attempt import Workbench
-from fpcad.spec.pose import Turning
 from fpcad.spec.schema import Spec
-from fpcad.spec.tool import CylinderTool
 from fpcad.units import DEG_PER_RAD, RAD_PER_DEG
 from fpcad.wield.evaluate import build_load
 from fpcad.wield.path import WieldingPath
@@ -145,11 +143,11 @@ class _Trial:
             motion = T_wrong @ np.linalg.inv(T_right)
             swollen = points[:, i] + self.swell_mm * normals[:, i]
             moved[:, i] = np.einsum("nij,nj->ni", motion[:, :3, :3], swollen) + motion[:, :3, 3]
-        return _moved_hands(hands, *_registered(points, moved))
+        return moved_hands(hands, *registered(points, moved))
 
     def _touching(self, hands: Array, angles: Array, touched: Array) -> tuple[Array, Array]:
         """Contact points (N, n, 3) [mm] in H and the links' outward normals there."""
-        R, origin = _tool_frames(self.turning, hands, angles)
+        R, origin = tool_frames(self.turning, hands, angles)
         axial, phi, zero = touched[..., 0], touched[..., 1], np.zeros_like(touched[..., 0])
         outward = np.stack([zero, np.cos(phi), np.sin(phi)], axis=-1)
         local = np.stack([axial, zero, zero], axis=-1) + self.tool.radius_mm * outward
@@ -203,42 +201,6 @@ def squeeze_mm(spec: Spec, distal_length_mm: float) -> float:
     strand = spec.grip.tendon_stiffness_n / spec.grip.tendon_length_mm
     lever = spec.motors.transmission.ip_pulley_radius_mm / distal_length_mm
     return spec.grip.min_normal_force_n / (strand * lever**2)
-
-
-def tool_ends(
-    tool: CylinderTool, turning: Turning, hands: Array, angles: Array
-) -> tuple[Array, Array]:
-    """Both ends (N, 3) [mm] in H of the tool turned by angles (N,), for poses (N, 6) of H in O."""
-    R, origin = _tool_frames(turning, hands, angles)
-    return origin + tool.back_mm * R[:, :, 0], origin + tool.tip_mm * R[:, :, 0]
-
-
-def _tool_frames(turning: Turning, hands: Array, angles: Array) -> tuple[Array, Array]:
-    """Rotations (N, 3, 3) and origins (N, 3) [mm] in H of O turned by angles (N,)."""
-    axis = np.array(turning.axis) / np.linalg.norm(turning.axis)
-    pivot = np.array(turning.pivot_mm)
-    turn = Rotation.from_rotvec(np.multiply.outer(angles, axis))
-    R_palm_o = Rotation.from_euler("ZYX", hands[:, [5, 4, 3]]).inv()
-    origin = R_palm_o.apply(pivot - turn.apply(pivot) - hands[:, :3])
-    return (R_palm_o * turn).as_matrix(), origin
-
-
-def _registered(points: Array, moved: Array) -> tuple[Array, Array]:
-    """The rigid motions (N, 3, 3), (N, 3) that bring points (N, n, 3) nearest to moved ones (Kabsch)."""
-    centre, aim = points.mean(axis=1), moved.mean(axis=1)
-    covariance = np.einsum("nki,nkj->nij", points - centre[:, None], moved - aim[:, None])
-    U, _, Vt = np.linalg.svd(covariance)
-    sign = np.linalg.det(U @ Vt)
-    flip = np.stack([np.ones_like(sign), np.ones_like(sign), sign], axis=1)
-    R = np.einsum("nji,nj,nkj->nik", Vt, flip, U)
-    return R, aim - np.einsum("nij,nj->ni", R, centre)
-
-
-def _moved_hands(hands: Array, R: Array, p: Array) -> Array:
-    """Poses (N, 6) of H in O after the tool was moved in H by rotations R and shifts p [mm]."""
-    turned = Rotation.from_euler("ZYX", hands[:, [5, 4, 3]]) * Rotation.from_matrix(R).inv()
-    angles = turned.as_euler("ZYX")
-    return np.hstack([hands[:, :3] - turned.apply(p), angles[:, ::-1]])
 
 
 def _wider(bench: Workbench, design: Array, radius_mm: float) -> Array:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from fpcad.make.carried import registered
 from fpcad.make.grip import ContactLink, Grip
-from fpcad.make.survive import _kept, _range_deg, _registered, _Trial, survival
+from fpcad.make.survive import _kept, _range_deg, _Trial, survival
 from fpcad.wield.evaluate import evaluate
 
 STATES = np.deg2rad(np.arange(-40.0, 61.0, 2.0))
@@ -69,7 +70,7 @@ def test_a_hand_that_moves_as_one_carries_its_tool_with_it():
     rng = np.random.default_rng(4)
     points = rng.normal(size=(5, 4, 3))
     turn, shift = Rotation.from_rotvec([0.3, -0.2, 0.1]).as_matrix(), np.array([1.0, 2.0, -3.0])
-    R, p = _registered(points, points @ turn.T + shift)
+    R, p = registered(points, points @ turn.T + shift)
     assert pytest.approx(np.broadcast_to(turn, (5, 3, 3))) == R
     assert p == pytest.approx(np.broadcast_to(shift, (5, 3)))
 
