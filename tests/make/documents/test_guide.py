@@ -26,6 +26,7 @@ from tests.make.hands import CENTRE, CLAY, geometry_of, parts_of
 STAMP = Stamp("clay", 24, "0123456789abcdef" * 4)
 GEOMETRY = geometry_of(CENTRE)
 ASSEMBLY = Assembly(tuple(parts_of(CENTRE)), ())
+FINGER_PIECES = sum(len(part.places) for part in ASSEMBLY.parts if part.link != "palm")
 
 
 def test_the_guide_names_every_part_and_its_hand():
@@ -63,11 +64,12 @@ def test_the_coupon_has_its_holes_and_its_notch():
 def test_a_finger_taken_apart_has_no_two_pieces_over_one_another():
     pieces = [mesh for mesh, _ in finger_pieces(ASSEMBLY, GEOMETRY, apart=True)]
     gaps = [b.bounds[0, 0] - a.bounds[1, 0] for a, b in pairwise(pieces)]
-    assert len(pieces) == len(ASSEMBLY.parts) - 1 and min(gaps) > 0
+    assert len(pieces) == FINGER_PIECES and min(gaps) > 0
 
 
 def test_pieces_are_cut_at_the_middle_plane():
     whole = finger_pieces(ASSEMBLY, GEOMETRY, apart=False)
+    whole = [piece for piece in whole if piece[0].bounds[0, 1] < 0 < piece[0].bounds[1, 1]]
     for (mesh, _), (half, _) in zip(whole, cut_open(whole), strict=True):
         assert half.bounds[0, 1] == pytest.approx(0, abs=1e-9)
         assert half.volume == pytest.approx(mesh.volume / 2, rel=1e-2)
@@ -75,7 +77,7 @@ def test_pieces_are_cut_at_the_middle_plane():
 
 def test_the_whole_hand_has_a_palm_and_four_fingers():
     pieces = hand_pieces(ASSEMBLY, GEOMETRY, rest_joints(CLAY.hand, GEOMETRY))
-    assert len(pieces) == 1 + 4 * (len(ASSEMBLY.parts) - 1)
+    assert len(pieces) == 1 + 4 * FINGER_PIECES
 
 
 @pytest.mark.parametrize("finger", GEOMETRY.fingers)
