@@ -17,6 +17,11 @@ from fpcad.sample.rrt import ACCEPTED
 
 CHECKPOINTS = (100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000)
 MB = 1e6
+PHYSICS = (
+    "Whether hands that move the tool on paper turn it in a simulation with friction, weight and soft "
+    "tendons, in the open loop: [physics.md](physics.md) and "
+    "[physics-hypothesis.md](physics-hypothesis.md)."
+)
 
 
 def write_document(results: Results, picture: str | None) -> str:
@@ -49,6 +54,8 @@ def write_document(results: Results, picture: str | None) -> str:
         "## Accepted poses checked again",
         residual_section(results.recheck),
         ipopt_section(dict(results.ipopt)),
+        "## In physics",
+        PHYSICS,
     ]
     return "\n\n".join(parts) + "\n"
 

@@ -39,14 +39,16 @@ def main() -> None:
     run_stages(build, "evaluate")
     trials = asked.build / "trials"
     run(build, asked.hands, trials, asked.time_step_ms / 1000.0, asked.seed)
-    write_whole(asked.page, page(read_results(trials), about(spec, asked)))
+    results = read_results(trials)
+    write_whole(asked.page, page(results, about(spec, asked, len(results))))
 
 
-def about(spec: Spec, asked: argparse.Namespace) -> str:
+def about(spec: Spec, asked: argparse.Namespace, done: int) -> str:
     """What was run, in words."""
     radii = ", ".join(f"{k} {v:g}" for k, v in spec.motors.transmission.model_dump().items())
     grip = ", ".join(f"{k} {v}" for k, v in spec.grip.model_dump(exclude_none=True).items())
-    return (
+    unfinished = f"**Unfinished: {done} of {asked.hands} hands, in the order drawn.** "
+    return (unfinished if done < asked.hands else "") + (
         f"Written by `python -m benchmarks.physics_hypothesis {asked.spec} --hands {asked.hands}`: "
         f"hands drawn with seed {asked.seed} from {spec.sampling.candidates} candidates, each pose's "
         f"exported trajectory in MuJoCo in the open loop, steps of {asked.time_step_ms:g} ms. Links are "

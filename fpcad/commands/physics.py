@@ -36,7 +36,7 @@ def simulate(
     ] = None,
     step: Annotated[
         float, typer.Option(min=0.05, max=1.0, help="Step of the simulation [ms].")
-    ] = 1.0,
+    ] = 0.5,
     with_film: Annotated[bool, typer.Option("--film/--no-film", help="Write a GIF.")] = True,
     as_json: AsJson = False,
 ) -> None:
