@@ -14,6 +14,8 @@ Row = dict[str, str]
 BOM, CHECKS = Path("parts") / "bom.csv", Path("parts") / "checks.csv"
 SEVERITIES = ("error", "warning", "figure")
 FIGURES = ("value", "limit")
+STAMP = ("hand", "spec_sha256")
+"""Columns that tell whose file it is: the page says so once."""
 UNITS = {"_g": "g", "_cm3": "cm³", "_mm": "mm"}
 SHOWN_REFUSALS = 10
 MOST_WARNINGS = 2
@@ -26,7 +28,11 @@ def parts_list(run: Run) -> list[Row]:
     None before the export is done.
     """
     rows = _rows(run, BOM)
-    filled = [name for name in (rows[0] if rows else ()) if any(row[name] for row in rows)]
+    filled = [
+        name
+        for name in (rows[0] if rows else ())
+        if name not in STAMP and any(row[name] for row in rows)
+    ]
     return [{_heading(name): row[name] or "" for name in filled} for row in rows]
 
 
@@ -47,9 +53,9 @@ def checks(run: Run) -> list[Row]:
 
 
 def _short(number: str) -> str:
-    """A number with three digits; what is none stays as it is."""
+    """A number with four digits; what is none stays as it is."""
     try:
-        return f"{float(number):.3g}"
+        return f"{float(number):.4g}"
     except ValueError:
         return number
 

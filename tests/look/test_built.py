@@ -27,7 +27,7 @@ def exported(clay: Spec, tmp_path: Path) -> Run:
     folder = write_made_up_run(tmp_path / "clay", clay, 12)
     write_manifest(folder, dict.fromkeys((*STAGES, "export"), "done"))
     write_whole(folder / "parts" / "checks.csv", FOUND)
-    write_whole(folder / "parts" / "bom.csv", "item,count,mass_g,hours\npalm,1,39.31,\n")
+    write_whole(folder / "parts" / "bom.csv", "item,count,mass_g,hours,hand\npalm,1,39.31,,4\n")
     return load(folder)
 
 
