@@ -5,6 +5,7 @@ from __future__ import annotations
 import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import lib3mf
 import numpy as np
@@ -32,7 +33,7 @@ class Item:
 
 def threemf_bytes(items: Sequence[Item], stamp: Stamp) -> bytes:
     """A 3MF of all items; equal items give equal bytes."""
-    model = get_wrapper().CreateModel()
+    model: Any = get_wrapper().CreateModel()
     model.SetUnit(lib3mf.ModelUnit.MilliMeter)
     about = model.GetMetaDataGroup()
     about.AddMetaData("", "Title", ", ".join(item.name for item in items), "xs:string", True)
@@ -52,7 +53,7 @@ def threemf_bytes(items: Sequence[Item], stamp: Stamp) -> bytes:
     return bytes(model.QueryWriter("3mf").WriteToBuffer())
 
 
-def _object(model: lib3mf.Model, item: Item) -> lib3mf.MeshObject:
+def _object(model: Any, item: Item) -> Any:
     body = model.AddMeshObject()
     body.SetName(item.name)
     vertices = np.asarray(item.mesh.vertices, dtype=float).tolist()

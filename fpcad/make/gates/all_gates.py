@@ -35,6 +35,9 @@ def check_part(spec: Spec, part: Part) -> list[Finding]:
     return found + check_overhang(part.name, part.mesh, laid)
 
 
+PARTS = "parts"
+"""Title of the gates of parts; where they fail, no others can be run."""
+
 Group = tuple[str, Callable[[], list[Finding]]]
 """What is checked, in a few words, and the check."""
 
@@ -50,7 +53,7 @@ def gate_groups(
 
     `every` is that of :func:`check_reach`.
     """
-    yield "parts", lambda: [f for part in assembly.parts for f in check_part(spec, part)]
+    yield PARTS, lambda: [f for part in assembly.parts for f in check_part(spec, part)]
     bodies, hand = hand_bodies(assembly, geometry), spec.hand
     tools = tool_bodies(spec)
     yield "fixed parts", lambda: check_fixed(bodies, geometry)

@@ -117,7 +117,7 @@ def test_a_damaged_part_is_found_in_the_files(clay_hand, tmp_path):
     mesh = trimesh.load_mesh(file)
     mesh.update_faces(np.arange(len(mesh.faces)) != 7)
     mesh.export(file)
-    title, found = next(iter(recheck(CLAY, GEOMETRY, tmp_path)))
+    ((title, found),) = recheck(CLAY, GEOMETRY, tmp_path)  # and nothing else is tried
     (fault,) = errors(found)
     assert title == "parts" and fault.part == "distal_skin" and "not closed" in fault.text
 
