@@ -57,7 +57,7 @@ class Print(SpecModel):
     """Enlargement of the skin beyond the contact surface [mm], against imprecise control."""
     clearance_mm: Positive = 0.2
     """Gap between parts that move against each other [mm]."""
-    press_mm: Annotated[float, Field(ge=-0.2, le=0.5)] = 0.05
+    hold_mm: Annotated[float, Field(ge=-0.2, le=0.5)] = 0.05
     """What a printed hole is wider than the pin or bearing that it holds [mm]; try the coupon."""
     slip_mm: Annotated[float, Field(ge=0.0, le=0.5)] = 0.15
     """What a printed hole is wider than the pin that turns in it [mm]."""

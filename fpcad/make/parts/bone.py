@@ -55,7 +55,7 @@ def proximal_bone(d: Dimensions) -> Solid:
     shaft = shaft.cut(box((x - feather, -slot, -FAR_MM), (x + FAR_MM, slot, FAR_MM)))
     prongs = [_slab(d, k.prong_inner, k.prong_outer, x), _slab(d, -k.prong_outer, -slot, x)]
     bone = shaft.fuse(*prongs, _neck(d), _palmar_disc(d), _dorsal_arm(d))
-    pin = rod((x, -FAR_MM, 0), (x, FAR_MM, 0), k.bearing.bore_mm / 2 + d.mcp.press)
+    pin = rod((x, -FAR_MM, 0), (x, FAR_MM, 0), k.bearing.bore_mm / 2 + d.mcp.hold)
     cuts = [pin, *_channels(d), *_pivot_holes(d), *interlock.pockets(d, "proximal")]
     return bone.cut(*cuts).clean()
 
@@ -100,7 +100,7 @@ def _ip_seats(d: Dimensions) -> list[Solid]:
         rod(
             (0, side * k.bearing_inner, 0),
             (0, side * FAR_MM, 0),
-            k.bearing.outer_mm / 2 + d.mcp.press,
+            k.bearing.outer_mm / 2 + d.mcp.hold,
         )
         for side in (-1, 1)
     ]

@@ -32,7 +32,7 @@ def mcp_cross(d: Dimensions) -> Solid:
         solids.append(box((0.0, -m.boss, z[0]), (front, m.boss, z[1])))
         solids.append(rod((0, 0, z[0]), (0, 0, z[1]), m.boss))
     cross = union(solids)
-    pins = [rod((0, 0, side), (0, 0, side * FAR_MM), m.pivot + m.press) for side in (-1, 1)]
+    pins = [rod((0, 0, side), (0, 0, side * FAR_MM), m.pivot + m.hold) for side in (-1, 1)]
     return cross.cut(_along_y(-FAR_MM, FAR_MM, m.axle + m.slip), *pins).clean()
 
 

@@ -55,7 +55,7 @@ class Mcp:
     """Radius of the abduction pins."""
     slip: float
     """What a turning hole is larger than its pin, in radius."""
-    press: float
+    hold: float
     """What a holding hole is larger than its pin, in radius."""
 
     @property
@@ -215,7 +215,7 @@ def mcp_dimensions(routing: Routing, settings: Print) -> Mcp:
         axle=axle.diameter_mm / 2,
         pivot=pivot.diameter_mm / 2,
         slip=settings.slip_mm / 2,
-        press=settings.press_mm / 2,
+        hold=settings.hold_mm / 2,
     )
 
 

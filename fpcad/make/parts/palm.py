@@ -80,7 +80,7 @@ def _largest(body: Solid) -> Solid:
 
 def _channels(d: Dimensions, root: NDArray[np.float64]) -> list[Solid]:
     """Ways of the six strands, and seats of the tubes that they leave the palm in; root's frame."""
-    tube = lookup("tubes", Tube, TUBE).outer_mm / 2 + d.mcp.press
+    tube = lookup("tubes", Tube, TUBE).outer_mm / 2 + d.mcp.hold
     found = []
     for strand in strands(d, root):
         points = strand.outside()
@@ -159,4 +159,4 @@ def _palmar_room(d: Dimensions, root: NDArray[np.float64]) -> Solid:
 def _axle_hole(d: Dimensions) -> Solid:
     """The flexion axle's hole, long enough to push the axle in from the side."""
     far = 2.5 * d.root
-    return rod((0, -far, 0), (0, far, 0), d.mcp.axle + d.mcp.press)
+    return rod((0, -far, 0), (0, far, 0), d.mcp.axle + d.mcp.hold)

@@ -62,7 +62,11 @@ class Part:
     @property
     def on_link(self) -> trimesh.Trimesh:
         """Mesh [mm] of all copies on one link, in the link's frame."""
-        return trimesh.util.concatenate([self.mesh.copy().apply_transform(T) for T in self.places])
+        copies = [self.mesh.copy().apply_transform(T) for T in self.places]
+        whole = trimesh.util.concatenate(copies)
+        if not isinstance(whole, trimesh.Trimesh):
+            raise TypeError(f"{self.name}: copies make up a {type(whole).__name__}, not one mesh")
+        return whole
 
     def placements(self, fingers: Iterable[str]) -> list[Placement]:
         """Where each copy in the hand sits."""

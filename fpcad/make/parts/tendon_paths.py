@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 
 from fpcad.make.parts.bone import ip_tangents
 from fpcad.make.parts.dimensions import ANCHOR_MARGIN_RAD, Dimensions
@@ -61,14 +61,12 @@ class FingerTendons:
 
     def _turn(self, length: Callable[[float, Array], float], joints: Array, zero: Array) -> float:
         at_rest = length(0.0, zero)
-        return float(
-            brentq(
-                lambda turn: length(turn, joints) - at_rest,
-                -MOST_TURN_RAD,
-                MOST_TURN_RAD,
-                xtol=1e-12,
-            )
+        found = root_scalar(
+            lambda turn: length(turn, joints) - at_rest,
+            bracket=(-MOST_TURN_RAD, MOST_TURN_RAD),
+            xtol=1e-12,
         )
+        return float(found.root)
 
     def _to_exit(self, strand: Strand, turn: float) -> float:
         """From the knot around the pulley and out; the knot lies so that some wrap always remains."""
