@@ -11,17 +11,20 @@ from fpcad.make.documents.inventory import read_inventory
 from fpcad.make.documents.print_ready import on_bed
 from fpcad.make.documents.stamp import Stamp
 from fpcad.make.documents.views import COLOURS, cut_open, draw, finger_pieces, hand_pieces
-from fpcad.make.gates.postures import rest_joints
+from fpcad.make.gates.meetings import tool_mesh
+from fpcad.make.gates.postures import hand_postures, rest_joints
+from fpcad.make.trajectory_file import read_trajectory
 from fpcad.pipeline.finished import finished_hand
 from fpcad.spec.dump import spec_hash
 from fpcad.store import read_json
 
 GAP_MM = 8.0
+TOOL_COLOUR = "#b98b52"
 ROW_MM = 320.0
 
 
 def main(build: Path) -> None:
-    """Write NAME-parts.png, NAME-finger-apart.png, NAME-finger-cut.png and NAME-hand.png."""
+    """Write NAME-parts.png, -finger-apart.png, -finger-cut.png, -hand.png, and one for each pose."""
     spec, geometry = finished_hand(build)
     assembly = read_inventory(build / "parts")
     stamp = Stamp(spec.name, read_json(build / "selected.json")["id"], spec_hash(spec))
@@ -42,6 +45,12 @@ def main(build: Path) -> None:
     draw(cut, images / f"{spec.name}-finger-cut.png", (0.0, -1.0, 1e-4), stamp)
     whole = hand_pieces(assembly, geometry, rest_joints(spec.hand, geometry))
     draw(whole, images / f"{spec.name}-hand.png", (0.55, -1.0, 0.3), stamp)
+    for file in sorted((build / "trajectories").glob("*.json")):
+        at = hand_postures(spec.hand, geometry, {file.stem: read_trajectory(file)})[1]
+        assert at.tool is not None
+        held = tool_mesh(spec.tool, 0.0).apply_transform(at.tool[0])
+        pieces = [*hand_pieces(assembly, geometry, at.joints[0]), (held, TOOL_COLOUR)]
+        draw(pieces, images / f"{spec.name}-holds-{file.stem}.png", (0.55, -1.0, 0.3), stamp)
 
 
 main(Path(sys.argv[1]))
