@@ -37,6 +37,17 @@ class Sample:
     gaps: int = 0
     """Gaps in what the controller heard so far."""
 
+    @property
+    def error_rad(self) -> Array:
+        """(n,) how far the joints are from where they may be [rad].
+
+        A joint with a preload may be anywhere from its command, held by the tool, to its goal, with
+        nothing in its way.
+        """
+        goal = self.command_rad + (0.0 if self.preload_rad is None else self.preload_rad)
+        low, high = np.minimum(self.command_rad, goal), np.maximum(self.command_rad, goal)
+        return self.position_rad - np.clip(self.position_rad, low, high)
+
 
 @dataclass(frozen=True)
 class Played:

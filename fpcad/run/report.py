@@ -43,7 +43,7 @@ class RunReport:
     """Telemetry samples that the errors are taken from."""
     joint_names: tuple[str, ...]
     max_error_rad: tuple[float, ...]
-    """Largest |measured - commanded| of each joint [rad]."""
+    """Largest error of each joint [rad], see :attr:`fpcad.run.driver.Sample.error_rad`."""
     rms_error_rad: tuple[float, ...]
     """Root mean square of the same [rad]."""
     max_error_all_rad: float
@@ -56,7 +56,7 @@ class RunReport:
 
 
 class TrackingError:
-    """Sums up |measured - commanded| of n joints while they move."""
+    """Sums up how far n joints are from where they may be while they move, see :attr:`Sample.error_rad`."""
 
     def __init__(self, joints: int) -> None:
         self.samples = 0
@@ -65,7 +65,7 @@ class TrackingError:
 
     def add(self, sample: Sample) -> float:
         """Take a sample in; its largest error [rad]."""
-        error = np.abs(sample.position_rad - sample.command_rad)
+        error = np.abs(sample.error_rad)
         if sample.state == "RUNNING":
             self.samples += 1
             self._largest = np.maximum(self._largest, error)

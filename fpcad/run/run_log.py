@@ -78,8 +78,7 @@ class RunLog:
         head += [sample.queued_knots, sample.bad_frames, sample.gaps, sample.resends]
         nothing = np.zeros(len(sample.position_rad))
         preload = nothing if sample.preload_rad is None else sample.preload_rad
-        error = sample.position_rad - sample.command_rad
-        for column in (sample.position_rad, sample.command_rad, error, preload):
+        for column in (sample.position_rad, sample.command_rad, sample.error_rad, preload):
             head += column.tolist()
         for told in (sample.current_ma, sample.temperature_c):
             head += self._told(told)

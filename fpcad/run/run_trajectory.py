@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +23,7 @@ from fpcad.run.motor_map import MotorMap
 from fpcad.run.options import RunOptions
 from fpcad.run.plan import closed, from_present, planned, start_of
 from fpcad.run.port import Transport, open_port
-from fpcad.run.quintic import Knots
+from fpcad.run.quintic import Knots, preload_at
 from fpcad.run.report import Progress, RunReport, TrackingError
 from fpcad.run.run_log import RunLog
 from fpcad.run.servo_driver import ServoDriver, ServoGuards
@@ -149,7 +149,8 @@ def follow(
 
     with RunLog(log, joint_names, motor_names) as table, counted_interrupts() as stops:
 
-        def note(sample: Sample) -> None:
+        def note(told: Sample) -> None:
+            sample = _with_preload(told, legs[len(done)])
             largest = error.add(sample)
             table.add(sample)
             if on_progress is not None:
@@ -162,6 +163,13 @@ def follow(
                 driver.wait(tool_in, watch)
             done.append(driver.play(leg, watch))
     return _report(driver, done, error, joint_names, total_s)
+
+
+def _with_preload(sample: Sample, leg: Knots) -> Sample:
+    """The sample with the preload of its place on the path: controllers tell theirs more seldom."""
+    if leg.preload is None or sample.state != "RUNNING":
+        return sample
+    return replace(sample, preload_rad=preload_at(leg, np.array([sample.path_s]))[0])
 
 
 def _report(

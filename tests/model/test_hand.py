@@ -94,7 +94,6 @@ def test_palm_follows_the_roots(clay: Spec):
     assert shapes["spine"].end_mm.tolist() == [42.5, 0, 9]
     assert shapes["knuckles"].start_mm.tolist() == [42.5, 30, 9]
     assert shapes["knuckles"].end_mm.tolist() == [42.5, -30, 9]
-    assert (
-        shapes["ring_mcp"].start_mm.tolist() == shapes["ring_mcp"].end_mm.tolist() == [42.5, -30, 0]
-    )
+    assert shapes["ring_mcp"].start_mm.tolist() == [42.5, -30, 3]
+    assert shapes["ring_mcp"].end_mm.tolist() == [42.5, -30, 3]
     assert shapes["ring_mcp"].finger == "ring" and shapes["spine"].finger is None

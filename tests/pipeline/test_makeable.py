@@ -25,7 +25,7 @@ def test_hands_without_room_are_refused_with_the_reason(built_clay, clay, bench)
     judged = refuse_early(build_of(built_clay, spec, bench), metrics)
     assert judged.schema == metrics.schema
     assert not any(judged["makeable"].to_pylist())
-    assert all("bone" in reason for reason in judged["reason"].to_pylist())
+    assert all("needs 26.1 mm, finger is" in reason for reason in judged["reason"].to_pylist())
 
 
 def test_a_reason_that_stands_is_kept(built_clay, clay, bench):
