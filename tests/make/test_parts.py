@@ -11,7 +11,7 @@ import trimesh
 from fpcad.errors import FpcadError
 from fpcad.make.mesh import mesh_of
 from fpcad.make.parts.dimensions import finger_dimensions
-from fpcad.make.parts.interlock import LUG_MM, WIDTH_SHARE, lug_range
+from fpcad.make.parts.interlock import LUG_MM, WIDTH_SHARE, Link, lug_range
 from fpcad.make.parts.skin import distal_skin, open_share
 from fpcad.make.parts.solids import ball, capsule, finger_core
 from tests.make.hands import CENTRE, CLAY, CORNERS, geometry_of, parts_of, with_print
@@ -54,7 +54,7 @@ def bend_moment(outer: float, inner: float) -> float:
     return 2 / 3 * (outer**3 - inner**3)
 
 
-def lugs_volume(link: str) -> float:
+def lugs_volume(link: Link) -> float:
     """Volume of both lugs of a skin: from a flat inside the bone out to the bore."""
     d, (low, high) = DIMENSIONS, lug_range(DIMENSIONS, link)
     half, bore = WIDTH_SHARE * d.bone / 2, d.skin_inner
