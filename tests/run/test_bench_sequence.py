@@ -97,8 +97,11 @@ def test_a_run_leaves_a_table_of_commands_errors_currents_and_faults(tmp_path, e
     assert len(rows) > 100 and {row["state"] for row in rows} == {"RUNNING", "READY"}
     row = {key: rows[50][key] for key in rows[50]}
     for name in NAMES:
-        measured, command = (float(row[f"{name}_{what}_rad"]) for what in ("position", "command"))
-        assert float(row[f"{name}_error_rad"]) == pytest.approx(measured - command)
+        measured, command, preload = (
+            float(row[f"{name}_{what}_rad"]) for what in ("position", "command", "preload")
+        )
+        nearest = sorted((command, measured, command + preload))[1]
+        assert float(row[f"{name}_error_rad"]) == pytest.approx(measured - nearest, abs=1e-12)
     assert all(float(row[f"{motor}_temperature_c"]) == 25 for motor in bus.names)
     assert max(float(row[f"{motor}_current_ma"]) for motor in bus.names) > 0
     assert {"queued_knots", "bad_frames", "gaps", "resends"} < set(row)
