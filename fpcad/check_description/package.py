@@ -94,6 +94,6 @@ def _expanded(file: Path) -> str:
         ) from error
     try:
         document: Any = xacro.process_file(str(file))
-    except Exception as error:
+    except Exception as error:  # a macro may run into anything; the file and the cause are told
         raise UnreadableError(f"{file.name} cannot be expanded: {error}") from error
     return document.toxml()

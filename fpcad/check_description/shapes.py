@@ -78,6 +78,6 @@ def _load(file: Path | None) -> trimesh.Trimesh:
         raise ValueError(f"there is no mesh {file}")
     try:
         loaded: Any = trimesh.load(file, force="mesh")
-    except Exception as error:
+    except Exception as error:  # each format's reader has errors of its own; all are told
         raise ValueError(f"{file.name} cannot be read: {error}") from error
     return loaded

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from fpcad.errors import ToolchainError
 from fpcad.run.drivers.registers import Registers
@@ -22,7 +23,7 @@ class DynamixelBus(ServoRegisterBus):
     """Servos in current-based position mode, with the bus watchdog of the servos themselves."""
 
     without_host = "Its servos stop by themselves when their watchdog trips, and hold."
-    models = {  # noqa: RUF012
+    models: ClassVar[dict[int, ServoModel]] = {
         1190: ServoModel("XL330-M077", 0.228, 1470),
         1200: ServoModel("XL330-M288", 0.52, 1470),
         1220: ServoModel("XC330-T288", 0.92, 800),

@@ -6,6 +6,8 @@ project's firmware between host and servos where that must not be.
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from fpcad.errors import ToolchainError
 from fpcad.run.drivers.registers import Registers
 from fpcad.run.drivers.servo_types import Block, Reading, ServoModel
@@ -25,7 +27,7 @@ class FeetechBus(ServoRegisterBus):
     without_host = (
         "Its servos keep their last goal, for they have no watchdog; cut their power if need be."
     )
-    models = {777: ServoModel("STS3215", 2.94, 2700)}  # noqa: RUF012
+    models: ClassVar[dict[int, ServoModel]] = {777: ServoModel("STS3215", 2.94, 2700)}
     firmware = Block(0, 2)
     state = Block(56, 15)  # position 56, speed 58, load 60, voltage 62, temperature 63, current 69
     torque_enable = 40

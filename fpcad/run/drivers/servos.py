@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from typing import Self, TypeVar
+from typing import ClassVar, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ class ServoRegisterBus(ABC):
     """Servos with ids `numbers` for axes `names`; a maker fills in its registers."""
 
     without_host: str
-    models: dict[int, ServoModel]
+    models: ClassVar[dict[int, ServoModel]]
     firmware: Block
     state: Block
     torque_enable: int
