@@ -96,7 +96,7 @@ def make_trajectory(build: Build, design: np.ndarray, path: WieldingPath) -> Tra
 
 EXPORT = Stage(
     "export",
-    ("name", "motors", "motion", "grip", "print"),
+    ("name", "motors", "motion", "grip", "print", "mount"),
     ("make",),
     ("hand/transmission.yaml", "parts/bom.csv", "trajectories", GRIP, SURVIVAL),
     export,

@@ -10,24 +10,23 @@ from numpy.typing import NDArray
 
 from fpcad.errors import MakeError
 from fpcad.make.parts.catalogue import Tube, lookup
-from fpcad.make.parts.dimensions import Dimensions
-from fpcad.make.parts.routing import EXIT_MM, dorsal_angle, strands
+from fpcad.make.parts.dimensions import Dimensions, roof_height
+from fpcad.make.parts.flange import palm_seat
+from fpcad.make.parts.flange_dimensions import FlangeDimensions
+from fpcad.make.parts.routing import EXIT_MM, TUBE, TUBE_SEAT_MM, dorsal_angle, strands
 from fpcad.make.parts.solids import (
     FAR_MM,
     Solid,
     ball,
     box,
-    capsule,
+    palm_primitive,
     placed,
     rod,
     swept_link,
     union,
 )
-from fpcad.model.geometry import HandGeometry, PalmShape
+from fpcad.model.geometry import HandGeometry
 from fpcad.spec.base import Interval
-
-ROOF_MM = 7.5
-"""Thickness of the palm's dorsal roof, which no link's sweep enters: it holds the palm together."""
 
 MOUNT_INSETS_MM = (0.31, 0.47, 0.23)
 """As for the bars, and no multiples of their step: mounts and bars would touch at their tops.
@@ -39,15 +38,13 @@ CRUMBS_MM3 = 20.0
 PALMAR_MM = 3.0
 """Between its ears the palm begins that far dorsally of the flexion axis."""
 
-TUBE = "PTFE-1x2"
-TUBE_SEAT_MM = 15.5
-"""Distance from the flexion axis from which a strand's way is as wide as its tube."""
-
 INSET_STEP_MM = 0.2
 """Primitives are inset by multiples of this, because surfaces that only touch break solid modelling."""
 
 
-def palm_solid(geometry: HandGeometry, d: Dimensions, inset: float) -> Solid:
+def palm_solid(
+    geometry: HandGeometry, flange: FlangeDimensions, d: Dimensions, inset: float
+) -> Solid:
     """The palm in the hand frame H; `inset` [mm] is that of the mounts in their primitives."""
     roots = [geometry.T_palm_root[finger] for finger in geometry.fingers]
     below_roof = box((-FAR_MM,) * 3, (FAR_MM, FAR_MM, roof_height(geometry)))
@@ -58,13 +55,14 @@ def palm_solid(geometry: HandGeometry, d: Dimensions, inset: float) -> Solid:
         body = body.cut(placed(_turning_room(d), root), placed(_axle_hole(d), root))
         body = body.cut(placed(_palmar_room(d, root), root))
         body = body.cut(*[placed(channel, root) for channel in _channels(d, root)])
+    body = body.cut(*palm_seat(flange, d.clearance))
     return _largest(body.clean())
 
 
 def _mounts(geometry: HandGeometry, inset: float) -> list[Solid]:
     """The primitives of each finger: what its ears are cut from."""
     own = [shape for shape in geometry.palm if shape.finger is not None]
-    return [_bar(shape, inset + n * 0.01) for n, shape in enumerate(own)]
+    return [palm_primitive(shape, inset + n * 0.01) for n, shape in enumerate(own)]
 
 
 def _largest(body: Solid) -> Solid:
@@ -100,26 +98,15 @@ def _bars_with_grooves(geometry: HandGeometry, d: Dimensions, below_roof: Solid)
     shapes = [shape for shape in geometry.palm if shape.finger is None]
     if not shapes:
         return []
-    bars = union([_bar(shape, n * INSET_STEP_MM) for n, shape in enumerate(shapes, start=1)])
+    bars = union(
+        [palm_primitive(shape, n * INSET_STEP_MM) for n, shape in enumerate(shapes, start=1)]
+    )
     roots = [geometry.T_palm_root[finger] for finger in geometry.fingers]
     kept = [ball(root[:3, 3], d.root - 2 * d.clearance) for root in roots]
     for root in roots:
         groove = placed(_link_room(d, d.mcp_abd, d.proximal_length + d.skin_outer), root)
         bars = bars.cut(groove.intersect(below_roof).cut(*kept))
     return [bars]
-
-
-def roof_height(geometry: HandGeometry) -> float:
-    """Height z [mm] in H up to which the fingers' cavities may reach."""
-    tops = [max(s.start_mm[2], s.end_mm[2]) + s.radius_mm for s in geometry.palm]
-    return float(max(tops)) - ROOF_MM
-
-
-def _bar(shape: PalmShape, inset: float) -> Solid:
-    radius = shape.radius_mm - inset
-    if np.allclose(shape.start_mm, shape.end_mm):
-        return ball(shape.start_mm, radius)
-    return capsule(shape.start_mm, shape.end_mm, radius)
 
 
 def _link_room(d: Dimensions, abduction: Interval, far: float) -> Solid:
