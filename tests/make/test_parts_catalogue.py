@@ -10,6 +10,7 @@ from fpcad.make.parts.catalogue import (
     Bearing,
     Insert,
     MotorBody,
+    Nut,
     Pin,
     Screw,
     Tendon,
@@ -40,6 +41,8 @@ def solid_of(row: object) -> Solid:
         case Screw():
             head = rod((0, 0, -row.head_height_mm), (0, 0, 0.1), row.head_diameter_mm / 2)
             return along_z(max(row.lengths_mm), row.thread_mm).fuse(head)
+        case Nut():
+            return along_z(row.height_mm, row.across_flats_mm, row.thread_mm)
         case Tube():
             return along_z(100.0, row.outer_mm, row.inner_mm)
         case Tendon():
