@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import trimesh
 
 from fpcad.make.parts.bought import SECTIONS, BoughtItem
 from fpcad.make.parts.catalogue import Insert, Screw
 from fpcad.make.parts.part import Array
-
-BRASS_G_MM3 = 8.5e-3
 
 
 def screw_item(
@@ -37,6 +33,4 @@ def insert_item(name: str, insert: Insert, link: str, places: tuple[Array, ...])
     """Heat-set inserts: z = 0 is the mouth, flush with the part, the rest points to -z."""
     mesh = trimesh.creation.cylinder(insert.outer_mm / 2, insert.length_mm, sections=SECTIONS)
     mesh.apply_translation((0.0, 0.0, -insert.length_mm / 2))
-    ring = math.pi / 4 * (insert.outer_mm**2 - insert.thread_mm**2)
-    mass = ring * insert.length_mm * BRASS_G_MM3
-    return BoughtItem(name, "inserts", insert.size, link, places, len(places), mass, mesh)
+    return BoughtItem(name, "inserts", insert.size, link, places, len(places), insert.mass_g, mesh)
