@@ -15,6 +15,7 @@ import numpy as np
 from fpcad.errors import MakeError
 from fpcad.make.parts.catalogue import MotorBody, Screw, Tendon, lookup
 from fpcad.make.parts.mcp_dimensions import LIP_EXTRA_MM, TENDON
+from fpcad.make.parts.solids import Solid, rod
 from fpcad.model.transmission import finger_transmission
 from fpcad.spec.schema import Spec
 from fpcad.spec.templates import TEMPLATES
@@ -102,6 +103,12 @@ class Spool:
         return self.extensor_z + self.groove / 2 + self.lip
 
     @property
+    def head_places(self) -> tuple[tuple[float, float], ...]:
+        """x, y of the horn's four screws."""
+        at = self.head_circle * math.sqrt(0.5)
+        return (at, at), (-at, at), (-at, -at), (at, -at)
+
+    @property
     def knot_radius(self) -> float:
         """Radius at which the knots lie."""
         return (self.root + self.bore) / 2
@@ -180,3 +187,29 @@ def _wrap(travel: float) -> float:
     if apart > 2 * math.pi - KNOTS_APART_RAD:
         return least + (2 * math.pi - apart + KNOTS_APART_RAD) / 2
     return least
+
+
+def spool_solid(s: Spool) -> Solid:
+    """The spool in its frame: flange over the horn, then the flexor's groove, then the extensor's."""
+    body = rod((0, 0, 0), (0, 0, s.height), s.root)
+    body = body.fuse(rod((0, 0, 0), (0, 0, s.flange_height), s.flange))
+    for low in (s.flexor_z + s.groove / 2, s.height - s.lip):
+        body = body.fuse(rod((0, 0, low), (0, 0, low + s.lip), s.rim))
+    heads = [rod((*at, -1), (*at, s.head_depth), s.head) for at in s.head_places]
+    knots = [
+        _knot(s, z, angle)
+        for z, angle in ((s.flexor_z, s.flexor_knot), (s.extensor_z, s.extensor_knot))
+    ]
+    bore = rod((0, 0, -1), (0, 0, s.height + 1), s.bore)
+    return body.cut(bore, *heads, *knots).clean()
+
+
+def _knot(s: Spool, z: float, angle: float) -> Solid:
+    """A strand's hole from its groove inwards, and a pocket for the knot, open to the outer face."""
+    c, sine = math.cos(angle), math.sin(angle)
+    knot, far = s.knot_radius, s.rim + 1
+    hole = rod((c * knot, sine * knot, z), (c * far, sine * far, z), KNOT_HOLE_MM)
+    start = z - KNOT_HOLE_MM
+    return hole.fuse(
+        rod((c * knot, sine * knot, start), (c * knot, sine * knot, s.height + 1), KNOT_MM)
+    )

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fpcad.make.parts.catalogue import Insert, Screw, Tendon, Tube, lookup
 from fpcad.make.parts.mcp_dimensions import LIP_EXTRA_MM, TENDON
 from fpcad.make.parts.routing import TUBE
+from fpcad.make.parts.solids import Solid, box, rod
 from fpcad.spec.hardware import Print
 
 SCREW = "M3"
@@ -90,3 +91,25 @@ def carriage_dimensions(settings: Print) -> Carriage:
         wall=settings.bone_wall_mm + LIP_EXTRA_MM,
         clearance=settings.clearance_mm,
     )
+
+
+def carriage_solid(c: Carriage) -> Solid:
+    """The carriage in its frame; its insert is melted in from the back, so that the screw draws it inwards."""
+    body = box((-c.half_width, c.low, 0), (c.half_width, c.high, LENGTH_MM))
+    seat = rod((0, 0, -1), (0, 0, SEAT_MM), c.tube)
+    way = rod((0, 0, 0), (0, 0, LENGTH_MM + 1), c.strand_way)
+    screw = rod((0, c.screw_y, -1), (0, c.screw_y, LENGTH_MM), c.screw)
+    start = LENGTH_MM - c.insert_depth
+    insert = rod((0, c.screw_y, start), (0, c.screw_y, LENGTH_MM + 1), c.insert)
+    return body.cut(seat, way, screw, insert).clean()
+
+
+def carriage_room(c: Carriage, bridge: float, end: float) -> list[Solid]:
+    """What the front plate leaves free for a carriage: its room, and holes for tube and screw.
+
+    In the frame of a carriage at z = 0; the room reaches from `bridge` to `end` [mm].
+    """
+    half, low = c.half_width + c.clearance, c.low - c.clearance
+    room = box((-half, low, bridge), (half, c.high + c.clearance, end))
+    tube = rod((0, 0, -1), (0, 0, bridge + 1), c.tube_pass)
+    return [room, tube, rod((0, c.screw_y, -1), (0, c.screw_y, bridge + 1), c.screw)]
