@@ -14,7 +14,7 @@ from scipy.spatial import KDTree
 
 from fpcad.make.mesh import manifold_of
 from fpcad.make.parts.assembly import Assembly, BoughtItem
-from fpcad.make.parts.part import FIXED_LINK
+from fpcad.make.parts.part import STILL_LINKS
 from fpcad.model.geometry import HandGeometry
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ class Body:
 
     part: str
     link: str
-    """`palm`, `mcp`, `proximal`, `distal` or `tool`."""
+    """`palm`, `mcp`, `proximal`, `distal`, `tool`, or `box` where the motors stand elsewhere."""
     finger: str | None
     """None for what belongs to the palm, and for the tool."""
     bought: bool
@@ -103,7 +103,7 @@ def hand_bodies(assembly: Assembly, geometry: HandGeometry) -> list[Body]:
     bodies = []
     for item in (*assembly.parts, *assembly.bought):
         bought = isinstance(item, BoughtItem)
-        fingers = (None,) if item.link == FIXED_LINK else geometry.fingers
+        fingers = (None,) if item.link in STILL_LINKS else geometry.fingers
         for place in item.places:
             mesh = item.mesh.copy().apply_transform(place)
             first = body_of(item.name, item.link, mesh, fingers[0], bought)
@@ -149,7 +149,9 @@ def _capsules(vertices: Array) -> Iterator[tuple[Array, float]]:
     for origin, direction in ((np.zeros(3), np.eye(3)[0]), *((middle, own[i]) for i in range(3))):
         along = (vertices - origin) @ direction
         radial = np.linalg.norm(vertices - origin - np.outer(along, direction), axis=1)
-        reach = np.sqrt(radial.max() ** 2 - radial**2)  # how far the balls at the ends may cover
+        reach = np.sqrt(
+            np.maximum(radial.max() ** 2 - radial**2, 0.0)
+        )  # how far the balls at the ends may cover
         low, high = float((along + reach).min()), float((along - reach).max())
         if low > high:
             low = high = (low + high) / 2

@@ -8,6 +8,7 @@ import numpy as np
 
 from fpcad.make.parts.bought import BoughtItem
 from fpcad.make.parts.catalogue import Insert, Screw
+from fpcad.make.parts.dimensions import Dimensions
 from fpcad.make.parts.fasteners import insert_mesh, screw_mesh
 from fpcad.make.parts.flange_dimensions import KEY_MM, PAD_MM, STEM_MM, FlangeDimensions
 from fpcad.make.parts.part import FIXED_LINK, Array
@@ -16,11 +17,11 @@ from fpcad.make.toolchain import cadquery
 from fpcad.model.geometry import HandGeometry
 
 
-def flange_solid(f: FlangeDimensions, geometry: HandGeometry, clearance: float) -> Solid:
-    """The flange in H; its boss is slimmer than its recess by `clearance` [mm] in diameter."""
+def flange_solid(f: FlangeDimensions, geometry: HandGeometry, d: Dimensions) -> Solid:
+    """The flange in H; its boss is slimmer than its recess by the print's clearance, in diameter."""
     foot = placed(_foot(f), f.T_palm_foot)
     foot = foot.cut(*[palm_primitive(shape, 0.0) for shape in geometry.palm])
-    above = placed(_tongue(f).fuse(_stem(f), _disc(f, clearance)), f.T_palm_foot)
+    above = placed(_tongue(f).fuse(_stem(f), _disc(f, d.clearance)), f.T_palm_foot)
     holes = [placed(hole, f.T_palm_foot) for hole in (*_foot_holes(f), *_disc_holes(f))]
     return foot.fuse(above).cut(*holes).clean()
 
