@@ -133,7 +133,10 @@ def _capsules(vertices: Array) -> Iterator[tuple[Array, float]]:
     for origin, direction in ((np.zeros(3), np.eye(3)[0]), *((middle, own[i]) for i in range(3))):
         along = (vertices - origin) @ direction
         radial = np.linalg.norm(vertices - origin - np.outer(along, direction), axis=1)
-        reach = np.sqrt(radial.max() ** 2 - radial**2)  # how far the balls at the ends may cover
+        # max with 0: the square of a number and of an array may differ in the last bit
+        reach = np.sqrt(
+            np.maximum(radial.max() ** 2 - radial**2, 0.0)
+        )  # how far the balls at the ends may cover
         low, high = float((along + reach).min()), float((along - reach).max())
         if low > high:
             low = high = (low + high) / 2

@@ -186,29 +186,59 @@ def _tongues(b: MotorBox) -> list[tuple[float, float]]:
 
 
 def _separators(b: MotorBox, gap: float) -> list[Solid]:
-    """Row +1: walls with ribs that hold the motors in x, lips that hold them in y, and ledges for their fronts."""
-    low, high, start = b.body_inner, b.body_outer, PLATE_MM - SUNK_MM
-    inner, outer, top = low - gap - LIP_MM, high + gap + LIP_MM, b.back_inner
-    web, rib = _web_half(b), _web_half(b) + b.body.gap_mm - gap
-    lip = (b.pitch - b.body.horn_diameter_mm) / 2 - SLOT_MM
-    foot = _web_half(b) + b.body.gap_mm + FOOT_MM
+    """Row +1: walls with ribs that hold the motors in x, lips that hold them in y, ledges for their fronts."""
+    start, top = PLATE_MM - SUNK_MM, b.back_inner
+    web = _web_half(b)
+    foot = web + b.body.gap_mm + FOOT_MM
+    steps = _wall_steps(b, gap)
+    inner, outer = steps[0][0], steps[-1][1]
     pieces = []
     for n in range(b.per_row + 1):
         x = (n - b.per_row / 2) * b.pitch
-        spans = [
-            (web, inner, outer, top),
-            (rib, inner, low + RIB_MM, top),
-            (rib, high - RIB_MM, outer, top),
-            (lip, inner, low - gap, top),
-            (lip, high + gap, outer, top),
-            (foot, inner, outer, b.motor_front),
-        ]
+        pieces.append(_extruded(_outline(x, steps, b.wall_x), start, top))
+        left, right = max(x - foot, -b.wall_x), min(x + foot, b.wall_x)
+        pieces.append(box((left, inner, start), (right, outer, b.motor_front)))
         if 0 < n < b.per_row:
-            spans += [(web, y0, y1, top + TONGUE_MM) for y0, y1 in _tongues(b)]
-        for half, y0, y1, z1 in spans:
-            left, right = max(x - half, -b.wall_x), min(x + half, b.wall_x)
-            pieces.append(box((left, y0, start), (right, y1, z1)))
+            pieces += [
+                box((x - web, low, top - SUNK_MM), (x + web, high, top + TONGUE_MM))
+                for low, high in _tongues(b)
+            ]
     return pieces
+
+
+def _wall_steps(b: MotorBox, gap: float) -> list[tuple[float, float, float]]:
+    """From, to and half thickness of a wall between motors along y: lip, rib, web, rib, lip."""
+    low, high, web = b.body_inner, b.body_outer, _web_half(b)
+    rib = web + b.body.gap_mm - gap
+    lip = (b.pitch - b.body.horn_diameter_mm) / 2 - SLOT_MM
+    return [
+        (low - gap - LIP_MM, low - gap, lip),
+        (low - gap, low + RIB_MM, rib),
+        (low + RIB_MM, high - RIB_MM, web),
+        (high - RIB_MM, high + gap, rib),
+        (high + gap, high + gap + LIP_MM, lip),
+    ]
+
+
+def _outline(
+    x: float, steps: Sequence[tuple[float, float, float]], wall_x: float
+) -> list[tuple[float, float]]:
+    """Outline in x, y of a wall about x, cut off where the box ends."""
+    right, left = [], []
+    for low, high, half in steps:
+        right += [(min(x + half, wall_x), y) for y in (low, high)]
+        left += [(max(x - half, -wall_x), y) for y in (low, high)]
+    around = [*right, *reversed(left)]
+    return [
+        point for point, last in zip(around, [around[-1], *around], strict=False) if point != last
+    ]
+
+
+def _extruded(outline: Sequence[tuple[float, float]], low: float, high: float) -> Solid:
+    """A prism along z."""
+    cq = cadquery()
+    wire = cq.Wire.makePolygon([cq.Vector(x, y, low) for x, y in outline], close=True)
+    return cq.Solid.extrudeLinear(wire, [], cq.Vector(0, 0, high - low))
 
 
 def _end_walls(b: MotorBox, gap: float) -> list[Solid]:
@@ -258,6 +288,7 @@ def _front_flange(b: MotorBox, settings: Print) -> list[Solid]:
 
 
 def _cone(radius: float) -> Solid:
+    """What the walls over the recess leave free, so that they are printed without support."""
     cq = cadquery()
     at, up = cq.Vector(0, 0, PILOT_DEPTH_MM), cq.Vector(0, 0, 1)
     return cq.Solid.makeCone(radius, 0.0, CONE_SLOPE * radius, at, up)
@@ -265,12 +296,10 @@ def _cone(radius: float) -> Solid:
 
 def _hexagon(x: float, y: float, half: float, low: float, high: float) -> Solid:
     """A hexagonal prism along z, two of its flats facing x at `half` [mm]."""
-    cq = cadquery()
     corner = half / math.cos(math.pi / 6)
     around = [math.pi / 6 + n * math.pi / 3 for n in range(6)]
-    points = [cq.Vector(x + corner * math.cos(a), y + corner * math.sin(a), low) for a in around]
-    wire = cq.Wire.makePolygon(points, close=True)
-    return cq.Solid.extrudeLinear(wire, [], cq.Vector(0, 0, high - low))
+    points = [(x + corner * math.cos(a), y + corner * math.sin(a)) for a in around]
+    return _extruded(points, low, high)
 
 
 def _cable_way(b: MotorBox) -> list[Solid]:
