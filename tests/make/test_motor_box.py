@@ -94,9 +94,9 @@ def meeting(
     for i, a in enumerate(ones):
         low, high = boxes[0][i]
         near = ((boxes[1][:, 0] <= high) & (boxes[1][:, 1] >= low)).all(axis=1)
-        for j in np.flatnonzero(near):
+        for j in map(int, np.flatnonzero(near)):
             if (volume := (a ^ others[j]).volume()) > INTERFERENCE_MM3:
-                yield i, int(j), volume
+                yield i, j, volume
 
 
 @pytest.mark.parametrize("kind", motor_types())
