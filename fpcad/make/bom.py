@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
 from fpcad.make.documents.stamp import Stamp
 from fpcad.make.parts.assembly import Assembly, BoughtItem
-from fpcad.make.parts.catalogue import TABLES, table
+from fpcad.make.parts.catalogue import TABLES, Tendon, lookup, table
+from fpcad.make.parts.mcp_dimensions import TENDON
 from fpcad.make.power import power
 from fpcad.spec.catalogue import motor
 from fpcad.spec.schema import Spec
@@ -45,12 +47,17 @@ class BomRow:
 
 
 def bill_of_materials(
-    spec: Spec, assembly: Assembly, fingers: int, hours: Mapping[str, float]
+    spec: Spec,
+    assembly: Assembly,
+    fingers: int,
+    hours: Mapping[str, float],
+    tendons_mm: Sequence[float] = (),
 ) -> list[BomRow]:
     """Printed parts first, then what is bought.
 
     Args:
         hours: print time of one piece by part, of those that were sliced.
+        tendons_mm: what is cut of the tendon [mm], one piece each.
     """
     density = {
         "endoskeleton": spec.print.bone_density_g_cm3,
@@ -78,6 +85,8 @@ def bill_of_materials(
         bought.append(
             _bought(MOTORS, 3 * fingers, row.type, f"{row.mass_g:g}", row.source, "three a finger")
         )
+    if tendons_mm:
+        bought.append(_tendon(tendons_mm))
     return [*printed, *bought, *_electrical(spec, 3 * fingers)]
 
 
@@ -98,6 +107,13 @@ def _item(item: BoughtItem) -> BomRow:
     elif item.kind == MOTORS:
         source = motor(item.size).source
     return _bought(item.name, item.count, size, f"{item.mass_g:.2f}", source, item.kind)
+
+
+def _tendon(pieces_mm: Sequence[float]) -> BomRow:
+    row = lookup("tendons", Tendon, TENDON)
+    metres = math.ceil(sum(pieces_mm) / 100.0) / 10.0
+    note = f"{len(pieces_mm)} pieces of {min(pieces_mm):.0f} to {max(pieces_mm):.0f} mm, tails included"
+    return _bought("tendon", 1, f"{row.size}, {metres:g} m", "", row.source, note)
 
 
 def _electrical(spec: Spec, motors: int) -> list[BomRow]:

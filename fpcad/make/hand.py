@@ -22,6 +22,7 @@ from fpcad.make.gates.table import findings_csv
 from fpcad.make.inertia import link_inertia
 from fpcad.make.mesh import in_metres, stl_bytes
 from fpcad.make.parts.assembly import Assembly, Progress, make_assembly
+from fpcad.make.parts.tendon_lengths import pieces_to_cut
 from fpcad.make.trajectory import Trajectory
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.geometry import HandGeometry
@@ -86,7 +87,8 @@ def write_parts(
     files += write_print_files(extra_parts(spec), spec.print, folder, stamp)
     files += write_inventory(assembly, folder, stamp)
     files += write_guide(spec, assembly, geometry, folder, stamp)
-    bill = bill_of_materials(spec, assembly, len(geometry.fingers), {})
+    tendons = pieces_to_cut(spec, geometry)
+    bill = bill_of_materials(spec, assembly, len(geometry.fingers), {}, tendons)
     return [*files, write_whole(folder / "bom.csv", bom_csv(bill, stamp))]
 
 

@@ -13,6 +13,7 @@ Array = NDArray[np.float64]
 
 _SAME_POINT_M = 1e-3
 _TINY = 1e-15
+_THIRDS = 40
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,40 @@ def nearest_meeting(chain: Chain, names: tuple[str, ...], position_rad: Array) -
             row = int(gap.argmin())
             if least is None or gap[row] < least.gap_m:
                 least = Meeting(one.link, other.link, float(gap[row]), row)
+    for block in chain.blocks:
+        for one in chain.capsules:
+            if one.link == block.link or _neighbours(chain, one.link, block.link):
+                continue
+            own = np.linalg.inv(frames[block.link] @ block.T_link)
+            start, end = (_into(own, p) for p in ends[id(one)])
+            gap = box_distance(start, end, block.half_m) - one.radius_m
+            row = int(gap.argmin())
+            if least is None or gap[row] < least.gap_m:
+                least = Meeting(block.link, one.link, float(gap[row]), row)
     return least
+
+
+def box_distance(start: Array, end: Array, half: Array) -> Array:
+    """Distances (M,) between segments, ends (M, 3), and a box of half extents (3,) about the origin.
+
+    The distance to a convex body is convex along a segment: the least is enclosed by thirds.
+    """
+    low, high = np.zeros(len(start)), np.ones(len(start))
+
+    def at(share: Array) -> Array:
+        point = start + share[:, None] * (end - start)
+        return np.linalg.norm(np.maximum(np.abs(point) - half, 0.0), axis=1)
+
+    for _ in range(_THIRDS):
+        a, b = low + (high - low) / 3, high - (high - low) / 3
+        left = at(a) <= at(b)
+        low, high = np.where(left, low, a), np.where(left, b, high)
+    return at((low + high) / 2)
+
+
+def _into(T: Array, points: Array) -> Array:
+    """Points (M, 3) by poses (M, 4, 4)."""
+    return np.einsum("mij,mj->mi", T[:, :3, :3], points) + T[:, :3, 3]
 
 
 def segment_distance(p1: Array, q1: Array, p2: Array, q2: Array) -> Array:

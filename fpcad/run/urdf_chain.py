@@ -15,6 +15,9 @@ from fpcad.run.limits import parse_urdf
 
 Array = NDArray[np.float64]
 
+CAPSULE_MIDDLE = "_cylinder"
+"""How the names of cylinders end that have a sphere at each end."""
+
 
 @dataclass(frozen=True)
 class Capsule:
@@ -25,6 +28,16 @@ class Capsule:
     start_m: Array  # (3,) in the link's frame
     end_m: Array  # (3,)
     radius_m: float
+
+
+@dataclass(frozen=True)
+class Block:
+    """A box, or a disc that is taken as one: as a capsule it would reach far beyond its flat sides."""
+
+    link: str
+    name: str
+    T_link: Array  # (4, 4) of its middle
+    half_m: Array  # (3,)
 
 
 @dataclass(frozen=True)
@@ -45,6 +58,7 @@ class Chain:
     root: str
     joints: tuple[Joint, ...]
     capsules: tuple[Capsule, ...]
+    blocks: tuple[Block, ...]
     mass_kg: dict[str, float]
     com_m: dict[str, Array]
 
@@ -73,7 +87,7 @@ class Chain:
 
 
 def read_chain(urdf: Path) -> Chain:
-    """The chain of a URDF whose collision solids are cylinders and spheres."""
+    """The chain of a URDF whose collision solids are cylinders, spheres and boxes."""
     root = parse_urdf(urdf)
     waiting = [_joint(element) for element in root.iter("joint")]
     children = {joint.child for joint in waiting}
@@ -87,12 +101,13 @@ def read_chain(urdf: Path) -> Chain:
         order += ready
         known |= {joint.child for joint in ready}
         waiting = [joint for joint in waiting if joint not in ready]
-    capsules = [c for link in root.iter("link") for c in _capsules(link, urdf)]
+    solids = [c for link in root.iter("link") for c in _solids(link, urdf)]
     masses = {link.get("name", ""): _mass(link) for link in root.iter("link")}
     return Chain(
         base,
         tuple(order),
-        tuple(capsules),
+        tuple(solid for solid in solids if isinstance(solid, Capsule)),
+        tuple(solid for solid in solids if isinstance(solid, Block)),
         {name: mass for name, (mass, _) in masses.items()},
         {name: com for name, (_, com) in masses.items()},
     )
@@ -115,11 +130,16 @@ def _joint(element: Element) -> Joint:
     )
 
 
-def _capsules(link: Element, urdf: Path) -> list[Capsule]:
-    found, name = [], link.get("name", "")
+def _solids(link: Element, urdf: Path) -> list[Capsule | Block]:
+    found: list[Capsule | Block] = []
+    name = link.get("name", "")
     for solid in link.iter("collision"):
         T = _origin(solid)
         cylinder, sphere = solid.find("geometry/cylinder"), solid.find("geometry/sphere")
+        block = _block_half(solid)
+        if block is not None:
+            found.append(Block(name, solid.get("name", ""), T, block))
+            continue
         half = np.zeros(3)
         if cylinder is not None:
             half = T[:3, 2] * float(cylinder.get("length", "0")) / 2
@@ -127,10 +147,24 @@ def _capsules(link: Element, urdf: Path) -> list[Capsule]:
         elif sphere is not None:
             radius = float(sphere.get("radius", "0"))
         else:
-            raise TrajectoryError(f"{urdf}: {name}: a collision solid is no cylinder and no sphere")
+            raise TrajectoryError(
+                f"{urdf}: {name}: a collision solid is no cylinder, no sphere and no box"
+            )
         centre = T[:3, 3]
         found.append(Capsule(name, solid.get("name", ""), centre - half, centre + half, radius))
     return found
+
+
+def _block_half(solid: Element) -> Array | None:
+    """Half extents (3,) [m] of a box, or of a cylinder that is flatter than a ball."""
+    box, cylinder = solid.find("geometry/box"), solid.find("geometry/cylinder")
+    if box is not None:
+        return _numbers(box.get("size", "0 0 0")) / 2
+    if cylinder is not None:
+        half, radius = float(cylinder.get("length", "0")) / 2, float(cylinder.get("radius", "0"))
+        if half < radius and not solid.get("name", "").endswith(CAPSULE_MIDDLE):
+            return np.array([radius, radius, half])
+    return None
 
 
 def _mass(link: Element) -> tuple[float, Array]:

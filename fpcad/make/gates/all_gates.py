@@ -15,6 +15,7 @@ from fpcad.make.gates.postures import hand_postures
 from fpcad.make.gates.printing import check_bed, check_overhang
 from fpcad.make.gates.reach import SOME, check_reach
 from fpcad.make.gates.solid import check_solid
+from fpcad.make.gates.tubes import check_tubes
 from fpcad.make.gates.wall import check_walls
 from fpcad.make.parts.assembly import Assembly, Progress
 from fpcad.make.parts.part import Part
@@ -57,6 +58,7 @@ def gate_groups(
     bodies, hand = hand_bodies(assembly, geometry), spec.hand
     tools = tool_bodies(spec)
     yield "fixed parts", lambda: check_fixed(bodies, geometry)
+    yield "tubes", lambda: check_tubes(spec, geometry)
     yield "joints", lambda: check_joints(bodies, geometry, hand)
     for postures in hand_postures(hand, geometry, trajectories):
         yield postures.name, lambda p=postures: check_meetings(bodies, tools, geometry, p)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
@@ -67,3 +69,12 @@ def _faces(rings: int) -> NDArray[np.int_]:
         faces += [np.stack([a, b, d], axis=1), np.stack([a, d, c], axis=1)]
     faces.append(np.stack([np.full(SIDES, first + 1), last + side, last + ahead], axis=1))
     return np.vstack(faces)
+
+
+def dense(points: Array, step: float = 0.5) -> Array:
+    """A polyline (n, 3) [mm] at points no farther apart than `step`."""
+    pieces = [
+        np.linspace(a, b, 1 + max(1, int(np.ceil(np.linalg.norm(b - a) / step))))
+        for a, b in itertools.pairwise(points)
+    ]
+    return np.vstack(pieces)

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fpcad.make.parts.dimensions import Dimensions
-from fpcad.make.parts.mounting import Mounting
+from fpcad.make.parts.dimensions import Dimensions, finger_dimensions
+from fpcad.make.parts.mounting import Mounting, mounting
 from fpcad.make.parts.part import Array
 from fpcad.make.parts.routing import EXIT_MM, TUBE_SEAT_MM
 from fpcad.make.parts.tendon_paths import FingerTendons
 from fpcad.make.parts.tube_routes import MOTORS
 from fpcad.model.geometry import HandGeometry
 from fpcad.model.transmission import finger_transmission
+from fpcad.spec.schema import Spec
 
 TAIL_MM = 60.0
 """What a knot takes up and hands need to tie it, at each end."""
@@ -84,12 +85,15 @@ def _mid_travel(d: Dimensions, mount: Mounting) -> Array:
     return A @ ranges.mean(axis=1)
 
 
-def strands_in_fingers(geometry: HandGeometry, d: Dimensions) -> float:
-    """Length [mm] of a finger's own strands, knots not counted.
+def pieces_to_cut(spec: Spec, geometry: HandGeometry) -> list[float]:
+    """Lengths [mm] of all pieces of tendon of a hand, with what knots need.
 
-    Two run around the output disc and the idler from one input pulley to the other, two from the drum to the IP
-    pulley. The dorsal ones are taken to be as long as the palmar ones.
+    Beside the motors' strands each finger has four of its own: two from input pulley to input pulley, around output
+    disc and idler, and two from the drum to the IP pulley. Dorsal ones are taken to be as long as palmar ones.
     """
-    tendons = FingerTendons(d, geometry.T_palm_root[geometry.fingers[0]])
-    across, along = tendons.own_strands()
-    return 2 * across + 2 * along
+    d = finger_dimensions(spec, geometry)
+    lengths = [own.to_cut for own in tendon_lengths(geometry, d, mounting(spec, geometry, d))]
+    for finger in geometry.fingers:
+        across, along = FingerTendons(d, geometry.T_palm_root[finger]).own_strands()
+        lengths += [own + 2 * TAIL_MM for own in (across, across, along, along)]
+    return lengths
