@@ -14,6 +14,7 @@ from fpcad.make.parts.solids import (
     Solid,
     ball,
     behind_bend,
+    beyond_flat,
     box,
     finger_core,
     mirrored_at,
@@ -35,7 +36,8 @@ THIN_MM = 0.8
 def distal_bone(d: Dimensions) -> Solid:
     """Core of the fingertip in the distal frame; its tongue holds the bearings and is the IP pulley."""
     k = d.knuckle
-    shaft = finger_core(d.distal_axis_length, d.bone).cut(behind_bend(d.ip_flex, d.clearance))
+    shaft = finger_core(d.distal_axis_length, d.bone).cut(beyond_flat(d.flat))
+    shaft = shaft.cut(behind_bend(d.ip_flex, d.clearance))
     for side in (-1, 1):
         room = rod((0, side * k.tongue_half, 0), (0, side * FAR_MM, 0), d.bone + d.clearance)
         shaft = shaft.cut(room)
@@ -47,7 +49,7 @@ def proximal_bone(d: Dimensions) -> Solid:
     """Proximal bone in the proximal frame: output discs, neck, shaft, clevis at the IP axis."""
     k, x = d.knuckle, d.proximal_length
     bend = mirrored_at(behind_bend(d.ip_flex, d.clearance), x)
-    shaft = rod((d.shaft_start, 0, 0), (x, 0, 0), d.bone).cut(bend)
+    shaft = rod((d.shaft_start, 0, 0), (x, 0, 0), d.bone).cut(beyond_flat(d.flat)).cut(bend)
     slot = k.prong_inner
     room = d.bone + d.clearance
     feather = math.sqrt(room**2 - (d.bone - FEATHER_MM) ** 2)
@@ -57,7 +59,7 @@ def proximal_bone(d: Dimensions) -> Solid:
     bone = shaft.fuse(*prongs, _neck(d), _palmar_disc(d), _dorsal_arm(d))
     pin = rod((x, -FAR_MM, 0), (x, FAR_MM, 0), k.bearing.bore_mm / 2 + d.mcp.hold)
     cuts = [pin, *_channels(d), *_pivot_holes(d), *interlock.pockets(d, "proximal")]
-    return bone.cut(*cuts).clean()
+    return bone.cut(*cuts)  # merging faces would break the solid where flat and neck lie close
 
 
 def ip_tangents(d: Dimensions, side: int) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -20,6 +20,8 @@ PULLEY_RIM_MM = 0.15
 """What the IP pulley's rim stands out beyond the strand's core."""
 ANCHOR_MARGIN_RAD = math.radians(12.0)
 """Wrap that a strand keeps before its anchor, at the end of its range."""
+FLAT_MM = 0.3
+"""How far the flat is cut into a bone's round shaft on which it lies when it is printed."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,11 @@ class Dimensions:
     def shaft_start(self) -> float:
         """Distance from the root at which the proximal bone's shaft and skin begin."""
         return self.root + self.clearance
+
+    @property
+    def flat(self) -> float:
+        """-y of the flat on which a bone's shaft lies when it is printed; the skin fills what it lacks."""
+        return self.bone - FLAT_MM
 
     @property
     def widest_abduction(self) -> float:
