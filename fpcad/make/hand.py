@@ -20,6 +20,10 @@ from fpcad.make.gates.finding import Severity
 from fpcad.make.gates.table import FILE as CHECKS
 from fpcad.make.gates.table import findings_csv
 from fpcad.make.inertia import link_inertia
+from fpcad.make.loads.check import load_findings
+from fpcad.make.loads.hand import hand_loads
+from fpcad.make.loads.table import FILE as LOADS
+from fpcad.make.loads.table import loads_csv
 from fpcad.make.mesh import in_metres, stl_bytes
 from fpcad.make.parts.assembly import Assembly, Progress, make_assembly
 from fpcad.make.trajectory import Trajectory
@@ -53,6 +57,9 @@ def make_hand(
     stamp = Stamp(spec.name, candidate, spec_hash(spec))
     assembly = make_assembly(spec, geometry, progress)
     findings = pass_gates(spec, assembly, geometry, trajectories, progress)
+    progress("loads")
+    loads = hand_loads(spec, assembly, geometry, trajectories)
+    findings += load_findings(loads)
     for finding in findings:
         if finding.severity is Severity.WARNING:
             log.info("%s", finding)
@@ -60,6 +67,7 @@ def make_hand(
     parts, folder = assembly.parts, out / "parts"
     files = write_parts(spec, assembly, geometry, folder, stamp)
     files.append(write_whole(folder / CHECKS, findings_csv(findings)))
+    files.append(write_whole(folder / LOADS, loads_csv(loads)))
     files += [
         write_whole(out / "hand" / VISUAL_FOLDER / f"{p.name}.stl", stl_bytes(in_metres(p.on_link)))
         for p in parts
