@@ -161,7 +161,7 @@ class Bench:
                 def note(msg: Telemetry, report: HomingReport | None) -> None:
                     done = 0 if report is None else min(report.joint, len(limits.names))
                     where = "" if report is None else limits.names[min(done, len(limits.names) - 1)]
-                    show(done, len(limits.names), where, to_sample(msg, link.resends, 0))
+                    show(done, len(limits.names), where, to_sample(msg, link.record.resends, 0))
 
                 found = home_controller(link, limits, note, stops)
         count = len(self.hand.motors)
