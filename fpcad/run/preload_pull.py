@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from fpcad.run.driver import Driver, Sample, Watch
 from fpcad.run.drivers.servo_types import ServoModel
 from fpcad.run.limits import JointLimits
-from fpcad.run.plan import PRELOAD_LIMIT_RAD, from_present
+from fpcad.run.plan import PRELOAD_LIMIT_RAD, from_present, resting_within
 from fpcad.run.pull_test import NOD_RAD, Slack, leading
 from fpcad.run.quintic import Knots
 from fpcad.run.transmission import Transmission
@@ -56,7 +56,7 @@ class PreloadPull:
         self._nm_per_ma = servo.stall_nm / servo.stall_ma
         self._watch = Watch(self._note, stops)
         self._now = driver.ready(clear=False)
-        self._place = self._now.command_rad
+        self._place = resting_within(self._now, limits)
         self._preload = np.zeros(len(names))
 
     def stiffness(self) -> Array:
