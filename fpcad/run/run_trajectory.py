@@ -26,7 +26,8 @@ from fpcad.run.port import Transport, open_port
 from fpcad.run.quintic import Knots, preload_at
 from fpcad.run.report import Progress, RunReport, TrackingError
 from fpcad.run.run_log import RunLog
-from fpcad.run.servo_driver import ServoDriver, ServoGuards
+from fpcad.run.servo_driver import ServoDriver
+from fpcad.run.servo_guard import ServoGuards
 from fpcad.run.session import HANDSHAKE_S
 from fpcad.run.sim.spawn import Mishap, firmware_process, simulated_controller
 

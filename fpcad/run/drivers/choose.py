@@ -15,7 +15,7 @@ from fpcad.run.drivers.servos import ServoRegisterBus
 from fpcad.run.drivers.sim import SimBus
 from fpcad.run.hand_files import HandFiles
 from fpcad.run.motor_map import Array, MotorMap
-from fpcad.run.servo_driver import ServoGuards
+from fpcad.run.servo_guard import ServoGuards
 from fpcad.run.sim.tendon_hand import TendonHand
 from fpcad.spec.catalogue import motor
 
