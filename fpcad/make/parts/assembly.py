@@ -20,6 +20,8 @@ from fpcad.make.parts.dimensions import Dimensions, finger_dimensions
 from fpcad.make.parts.flange import flange_items, flange_solid
 from fpcad.make.parts.flange_dimensions import FlangeDimensions, flange_dimensions
 from fpcad.make.parts.palm import MOUNT_INSETS_MM, palm_solid
+from fpcad.make.parts.palm_pad import NAME as PAD
+from fpcad.make.parts.palm_pad import pad_place, pad_solid
 from fpcad.make.parts.part import FIXED_LINK, Array, Material, Part, in_place
 from fpcad.make.parts.skin import distal_skin, proximal_skin
 from fpcad.make.parts.solids import Solid
@@ -106,6 +108,7 @@ def _plans(spec: Spec, geometry: HandGeometry, flange: FlangeDimensions) -> list
             "endoskeleton",
             (lambda d: flange_solid(flange, geometry, d.clearance),),
         ),
+        *_pad_plans(geometry, flange),
         _Plan("mcp_cross", "mcp", "endoskeleton", (mcp_cross,), T_bed=on_end),
         _Plan("input_pulley", "mcp", "endoskeleton", (input_pulley,), both_sides, axis_up),
         _Plan("idler_pulley", "mcp", "endoskeleton", (idler_pulley,)),
@@ -115,6 +118,16 @@ def _plans(spec: Spec, geometry: HandGeometry, flange: FlangeDimensions) -> list
         _Plan("distal_bone", "distal", "endoskeleton", (distal_bone,), T_bed=axis_up),
         _Plan("distal_skin", "distal", "skin", (distal_skin,), T_bed=on_end),
     ]
+
+
+def _pad_plans(geometry: HandGeometry, flange: FlangeDimensions) -> list[_Plan]:
+    """The palm's pad, where there is room for one."""
+    place = pad_place(geometry, flange)
+    return (
+        []
+        if place is None
+        else [_Plan(PAD, FIXED_LINK, "skin", (partial(pad_solid, geometry, place),))]
+    )
 
 
 def turned(axis: str, degrees: float) -> Array:
