@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from fpcad.errors import MakeError
+from fpcad.make.documents.stamp import Stamp
 from fpcad.make.hand import make_hand
 from fpcad.make.preload.tighten import tightened
 from fpcad.make.survive import survival, told
@@ -21,7 +22,8 @@ from fpcad.pipeline.select import METRICS, SELECTED, refuse
 from fpcad.pipeline.stage import Build, Counts, Stage
 from fpcad.sample.space import design_space
 from fpcad.spec.catalogue import motor
-from fpcad.store import read_json, read_table, write_json
+from fpcad.spec.dump import spec_hash
+from fpcad.store import json_text, read_json, read_table
 from fpcad.wield.evaluate import contact_projector
 from fpcad.wield.path import WieldingPath
 
@@ -62,6 +64,7 @@ def _export_chosen(build: Build) -> int:
     named = np.array([selected["design"][name] for name in space.names])
     design = space.internal(named)
     geometry = hand_geometry(build.bench.template, design)
+    stamp = Stamp(build.spec.name, int(selected["id"]), spec_hash(build.spec))
     trajectories, margins, paths = {}, {}, read_paths(build, int(selected["id"]))
     with build.reporter.stage("trajectories", len(build.spec.poses)) as bar:
         for path in paths.values():
@@ -70,16 +73,18 @@ def _export_chosen(build: Build) -> int:
                 *(build.spec, path.pose, geometry, path.hand_in_tool),
             )
             trajectories[path.pose] = trajectory
-            write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json")
+            write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json", stamp)
             bar.advance(1, f"{path.pose}: {trajectory.duration_s:.1f} s")
-    write_json(build.folder / GRIP, {pose: asdict(told) for pose, told in margins.items()})
+    stamp.write(
+        build.folder / GRIP, json_text({pose: asdict(told) for pose, told in margins.items()})
+    )
     with build.reporter.stage("parts", PART_STEPS) as bar:
         progress = partial(bar.advance, 1)
         made = build.spec, geometry, build.folder
         files = make_hand(*made, progress, trajectories, int(selected["id"]))
     with build.reporter.stage("errors of print and joints", None):
         figures = survival(build.bench, design, paths.values())
-    write_json(build.folder / SURVIVAL, figures)
+    stamp.write(build.folder / SURVIVAL, json_text(figures))
     for line in told(figures):
         build.reporter.note(line)
     return len(files) + len(build.spec.poses) + 2
