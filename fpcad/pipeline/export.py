@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from fpcad.errors import MakeError
+from fpcad.make.documents.stamp import Stamp
 from fpcad.make.gripping import gripping_trajectory
 from fpcad.make.hand import make_hand
 from fpcad.make.survive import survival, told
@@ -18,7 +19,8 @@ from fpcad.pipeline.paths import drop_spare_paths, read_paths
 from fpcad.pipeline.select import METRICS, SELECTED, refuse
 from fpcad.pipeline.stage import Build, Counts, Stage
 from fpcad.sample.space import design_space
-from fpcad.store import read_json, read_table, write_json
+from fpcad.spec.dump import spec_hash
+from fpcad.store import json_text, read_json, read_table
 
 GRIP, SURVIVAL = "grip.json", "survival.json"
 PART_STEPS = 24
@@ -57,6 +59,7 @@ def _export_chosen(build: Build) -> int:
     named = np.array([selected["design"][name] for name in space.names])
     design = space.internal(named)
     geometry = hand_geometry(build.bench.template, design)
+    stamp = Stamp(build.spec.name, int(selected["id"]), spec_hash(build.spec))
     trajectories, margins, paths = {}, {}, read_paths(build, int(selected["id"]))
     with build.reporter.stage("trajectories", len(build.spec.poses)) as bar:
         for path in paths.values():
@@ -64,16 +67,18 @@ def _export_chosen(build: Build) -> int:
                 build.bench, design, geometry, path
             )
             trajectories[path.pose] = trajectory
-            write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json")
+            write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json", stamp)
             bar.advance(1, f"{path.pose}: {trajectory.duration_s:.1f} s")
-    write_json(build.folder / GRIP, {pose: asdict(told) for pose, told in margins.items()})
+    stamp.write(
+        build.folder / GRIP, json_text({pose: asdict(told) for pose, told in margins.items()})
+    )
     with build.reporter.stage("parts", PART_STEPS) as bar:
         progress = partial(bar.advance, 1)
         made = build.spec, geometry, build.folder
         files = make_hand(*made, progress, trajectories, int(selected["id"]))
     with build.reporter.stage("errors of print and joints", None):
         figures = survival(build.bench, design, paths.values())
-    write_json(build.folder / SURVIVAL, figures)
+    stamp.write(build.folder / SURVIVAL, json_text(figures))
     for line in told(figures):
         build.reporter.note(line)
     return len(files) + len(build.spec.poses) + 2
@@ -81,7 +86,7 @@ def _export_chosen(build: Build) -> int:
 
 EXPORT = Stage(
     "export",
-    ("name", "motors", "motion", "grip", "print"),
+    ("name", "motors", "motion", "grip", "print", "mount"),
     ("make",),
     ("hand/transmission.yaml", "parts/bom.csv", "trajectories", GRIP, SURVIVAL),
     export,

@@ -106,7 +106,7 @@ def describe_choice(build: Build, choice: Choice) -> dict[str, Any]:
 
 SELECT = Stage(
     "select",
-    ("selection", "path", "motors", "print"),
+    ("selection", "path", "motors", "print", "mount"),
     ("wield", "select", "make/parts", "make/gates"),
     (METRICS, PATHS, SELECTED),
     select,

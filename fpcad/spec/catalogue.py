@@ -1,4 +1,4 @@
-"""The motors that fpcad knows, read from data/motors.csv."""
+"""The motors and flanges that a spec may name, read from data/motors.csv and data/flanges.csv."""
 
 from __future__ import annotations
 
@@ -44,9 +44,19 @@ def motor_types() -> tuple[str, ...]:
 
 
 @cache
+def flange_sizes() -> tuple[str, ...]:
+    """Names of all flanges in the order of their table; their sizes are read where they are made."""
+    return tuple(row["size"] for row in _table("flanges"))
+
+
+@cache
 def _rows() -> dict[str, Motor]:
-    text = (files("fpcad") / "data" / "motors.csv").read_text(encoding="utf-8")
-    return {row["type"]: _motor(row) for row in csv.DictReader(text.splitlines())}
+    return {row["type"]: _motor(row) for row in _table("motors")}
+
+
+def _table(name: str) -> list[dict[str, str]]:
+    text = (files("fpcad") / "data" / f"{name}.csv").read_text(encoding="utf-8")
+    return list(csv.DictReader(text.splitlines()))
 
 
 def _motor(row: dict[str, str]) -> Motor:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from fpcad.spec.catalogue import motor_types
+from fpcad.spec.catalogue import flange_sizes, motor_types
 from fpcad.spec.checks_initial import check_initial
 from fpcad.spec.checks_pose import check_poses
 from fpcad.spec.faults import KeyPath, one_of, quoted
 from fpcad.spec.hand import Hand, PalmCapsule, ParameterRange
 from fpcad.spec.hardware import Motors
+from fpcad.spec.mount import Mount
 from fpcad.spec.names import check_exact_keys, span
 from fpcad.spec.parts import INTERVAL, PALM_PRIMITIVE, Finding, Parts
 from fpcad.spec.process import Sampling
@@ -37,6 +38,7 @@ def cross_check(parts: Parts) -> Iterator[Finding]:
     yield from _check_palm_names(parts)
     yield from _check_sampling(parts)
     yield from _check_motors(parts)
+    yield from _check_mount(parts)
 
 
 def _check_parameters(parts: Parts, names: TemplateNames) -> Iterator[Finding]:
@@ -110,6 +112,12 @@ def _check_motors(parts: Parts) -> Iterator[Finding]:
     motor = parts.get_or(("motors", "type"), str, Motors.model_fields["type"].default)
     if motor is not None and motor not in motor_types():
         yield Finding(("motors", "type"), one_of(motor_types(), motor))
+
+
+def _check_mount(parts: Parts) -> Iterator[Finding]:
+    flange = parts.get_or(("mount", "flange"), str, Mount.model_fields["flange"].default)
+    if flange is not None and flange not in flange_sizes():
+        yield Finding(("mount", "flange"), one_of(flange_sizes(), flange))
 
 
 def _check_wiring(parts: Parts, names: TemplateNames) -> Iterator[Finding]:

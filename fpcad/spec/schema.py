@@ -10,6 +10,7 @@ from fpcad.spec.base import Name, SpecModel, rejection
 from fpcad.spec.grip import Grip
 from fpcad.spec.hand import Hand
 from fpcad.spec.hardware import Motion, Motors, Print
+from fpcad.spec.mount import Mount
 from fpcad.spec.pose import Initial, Pose
 from fpcad.spec.process import Bounds, Path, Sampling, Selection, Solver, Statics
 from fpcad.spec.tool import CylinderTool
@@ -52,6 +53,8 @@ class Spec(SpecModel):
     """How tight the exported trajectories hold the tool."""
     print: Print = Print()
     """How the parts are printed."""
+    mount: Mount = Mount()
+    """How the hand is fixed, and where its motors are."""
 
     @field_validator("fpcad", mode="before")
     @classmethod

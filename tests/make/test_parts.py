@@ -33,6 +33,7 @@ def test_meshes_lose_little_volume(clay_parts):
 def test_fingers_share_their_parts(clay_parts):
     assert {name: part.count for name, part in clay_parts.items()} == {
         "palm": 1,
+        "palm_pad": 1,
         "mcp_cross": 4,
         "input_pulley": 8,
         "idler_pulley": 4,

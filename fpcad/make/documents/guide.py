@@ -20,7 +20,6 @@ from fpcad.model.geometry import HandGeometry
 from fpcad.model.transmission import finger_transmission
 from fpcad.spec.schema import Spec
 from fpcad.spec.templates import TEMPLATES
-from fpcad.store import write_whole
 from fpcad.units import RAD_PER_DEG
 
 log = logging.getLogger(__name__)
@@ -60,7 +59,7 @@ def write_guide(
         missing = str(error)
         log.warning("assembly.md has no pictures: %s", missing)
     text = guide_text(spec, assembly, stamp, missing)
-    return [*files, write_whole(folder / FILE, text)]
+    return [*files, stamp.write(folder / FILE, text)]
 
 
 def guide_text(spec: Spec, assembly: Assembly, stamp: Stamp, missing: str = "") -> str:

@@ -17,7 +17,11 @@ from fpcad.make.parts.bone import distal_bone, proximal_bone
 from fpcad.make.parts.bought import BoughtItem, finger_items
 from fpcad.make.parts.differential import idler_pulley, input_pulley, ip_drum, mcp_cross
 from fpcad.make.parts.dimensions import Dimensions, finger_dimensions
+from fpcad.make.parts.flange import flange_items, flange_solid
+from fpcad.make.parts.flange_dimensions import FlangeDimensions, flange_dimensions
 from fpcad.make.parts.palm import MOUNT_INSETS_MM, palm_solid
+from fpcad.make.parts.palm_pad import NAME as PAD
+from fpcad.make.parts.palm_pad import pad_place, pad_solid
 from fpcad.make.parts.part import FIXED_LINK, Array, Material, Part, in_place
 from fpcad.make.parts.skin import distal_skin, proximal_skin
 from fpcad.make.parts.solids import Solid
@@ -45,15 +49,18 @@ class Assembly:
 
 def make_assembly(spec: Spec, geometry: HandGeometry, progress: Progress) -> Assembly:
     """Everything of a hand; raises :class:`fpcad.errors.MakeError` with the reason otherwise."""
-    items = finger_items(finger_dimensions(spec, geometry), len(geometry.fingers))
+    d = finger_dimensions(spec, geometry)
+    flange = flange_dimensions(spec.mount, geometry, d)
+    items = (*finger_items(d, len(geometry.fingers)), *flange_items(flange))
     return Assembly(tuple(make_parts(spec, geometry, progress)), items)
 
 
 def make_parts(spec: Spec, geometry: HandGeometry, progress: Progress) -> list[Part]:
     """All printed parts of a hand; parts that fingers share are made once."""
     d, fingers = finger_dimensions(spec, geometry), len(geometry.fingers)
+    flange = flange_dimensions(spec.mount, geometry, d)
     parts = []
-    for plan in _plans(geometry):
+    for plan in _plans(spec, geometry, flange):
         progress(plan.name)
         solid, mesh = _made(plan, d, spec)
         count = len(plan.places) * (1 if plan.link == FIXED_LINK else fingers)
@@ -89,12 +96,19 @@ class _Plan:
     T_bed: Array = field(default_factory=lambda: np.eye(4))
 
 
-def _plans(geometry: HandGeometry) -> list[_Plan]:
+def _plans(spec: Spec, geometry: HandGeometry, flange: FlangeDimensions) -> list[_Plan]:
     axis_up, on_end = turned("x", 90.0), turned("y", 90.0)
-    palms = tuple(partial(palm_solid, geometry, inset=inset) for inset in MOUNT_INSETS_MM)
+    palms = tuple(partial(palm_solid, geometry, flange, inset=inset) for inset in MOUNT_INSETS_MM)
     both_sides = (np.eye(4), turned("z", 180.0))
     return [
         _Plan("palm", "palm", "endoskeleton", palms, T_bed=turned("x", 180.0)),
+        _Plan(
+            "flange",
+            "palm",
+            "endoskeleton",
+            (lambda d: flange_solid(flange, geometry, d.clearance),),
+        ),
+        *_pad_plans(geometry, flange),
         _Plan("mcp_cross", "mcp", "endoskeleton", (mcp_cross,), T_bed=on_end),
         _Plan("input_pulley", "mcp", "endoskeleton", (input_pulley,), both_sides, axis_up),
         _Plan("idler_pulley", "mcp", "endoskeleton", (idler_pulley,)),
@@ -104,6 +118,16 @@ def _plans(geometry: HandGeometry) -> list[_Plan]:
         _Plan("distal_bone", "distal", "endoskeleton", (distal_bone,), T_bed=axis_up),
         _Plan("distal_skin", "distal", "skin", (distal_skin,), T_bed=on_end),
     ]
+
+
+def _pad_plans(geometry: HandGeometry, flange: FlangeDimensions) -> list[_Plan]:
+    """The palm's pad, where there is room for one."""
+    place = pad_place(geometry, flange)
+    return (
+        []
+        if place is None
+        else [_Plan(PAD, FIXED_LINK, "skin", (partial(pad_solid, geometry, place),))]
+    )
 
 
 def turned(axis: str, degrees: float) -> Array:

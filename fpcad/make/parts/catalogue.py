@@ -1,4 +1,4 @@
-"""What is bought: bearings, pins, screws, inserts, tendons, tubes, motor bodies; data/*.csv has the sizes."""
+"""What is bought: bearings, pins, screws, inserts, tendons, tubes, flanges, motor bodies; data/*.csv has the sizes."""
 
 from __future__ import annotations
 
@@ -115,6 +115,21 @@ class Tube(Row):
     outer_mm: float = Field(gt=0)
 
 
+class Flange(Row):
+    """The hand's side of a robot's mechanical interface: a disc with a boss and a circle of screws."""
+
+    outer_mm: float = Field(gt=0)
+    circle_mm: float = Field(gt=0)
+    """Diameter of the circle of the screws."""
+    screws: int = Field(ge=3)
+    screw: str
+    boss_mm: float = Field(gt=0)
+    """Diameter of the boss that centres it."""
+    boss_height_mm: float = Field(gt=0)
+    disc_mm: float = Field(gt=0)
+    """Thickness of the disc under the screws' heads."""
+
+
 class MotorBody(BaseModel):
     """Envelope of a motor: width x height across the shaft, depth along it, horn included."""
 
@@ -142,6 +157,7 @@ TABLES: dict[str, type[BaseModel]] = {
     "inserts": Insert,
     "tendons": Tendon,
     "tubes": Tube,
+    "flanges": Flange,
     "motor_bodies": MotorBody,
 }
 

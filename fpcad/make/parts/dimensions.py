@@ -18,6 +18,8 @@ CHANNEL_GAP_MM = 0.3
 """What a tendon's channel is wider than the tendon, in radius."""
 PULLEY_RIM_MM = 0.15
 """What the IP pulley's rim stands out beyond the strand's core."""
+ROOF_MM = 7.5
+"""Thickness of the palm's dorsal roof, which no link's sweep enters: it holds the palm together."""
 ANCHOR_MARGIN_RAD = math.radians(12.0)
 """Wrap that a strand keeps before its anchor, at the end of its range."""
 FLAT_MM = 0.3
@@ -96,6 +98,12 @@ def finger_dimensions(spec: Spec, geometry: HandGeometry) -> Dimensions:
         mcp_abd=limits["mcp_abd"],
         ip_flex=limits["ip_flex"],
     )
+
+
+def roof_height(geometry: HandGeometry) -> float:
+    """Height z [mm] in H up to which the fingers' cavities may reach."""
+    tops = [max(s.start_mm[2], s.end_mm[2]) + s.radius_mm for s in geometry.palm]
+    return float(max(tops)) - ROOF_MM
 
 
 def reasons(spec: Spec, geometry: HandGeometry) -> list[str]:

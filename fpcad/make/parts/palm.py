@@ -11,23 +11,22 @@ from numpy.typing import NDArray
 from fpcad.errors import MakeError
 from fpcad.make.parts.catalogue import Tube, lookup
 from fpcad.make.parts.dimensions import Dimensions
-from fpcad.make.parts.routing import EXIT_MM, dorsal_angle, strands
+from fpcad.make.parts.flange import palm_seat
+from fpcad.make.parts.flange_dimensions import FlangeDimensions
+from fpcad.make.parts.palm_pad import pad_place, pad_recess
+from fpcad.make.parts.palm_room import below_roof, link_room
+from fpcad.make.parts.routing import EXIT_MM, TUBE, TUBE_SEAT_MM, dorsal_angle, strands
 from fpcad.make.parts.solids import (
-    FAR_MM,
     Solid,
     ball,
     box,
-    capsule,
+    palm_primitive,
     placed,
     rod,
     swept_link,
     union,
 )
-from fpcad.model.geometry import HandGeometry, PalmShape
-from fpcad.spec.base import Interval
-
-ROOF_MM = 7.5
-"""Thickness of the palm's dorsal roof, which no link's sweep enters: it holds the palm together."""
+from fpcad.model.geometry import HandGeometry
 
 MOUNT_INSETS_MM = (0.31, 0.47, 0.23)
 """As for the bars, and no multiples of their step: mounts and bars would touch at their tops.
@@ -39,32 +38,34 @@ CRUMBS_MM3 = 20.0
 PALMAR_MM = 3.0
 """Between its ears the palm begins that far dorsally of the flexion axis."""
 
-TUBE = "PTFE-1x2"
-TUBE_SEAT_MM = 15.5
-"""Distance from the flexion axis from which a strand's way is as wide as its tube."""
-
 INSET_STEP_MM = 0.2
 """Primitives are inset by multiples of this, because surfaces that only touch break solid modelling."""
 
 
-def palm_solid(geometry: HandGeometry, d: Dimensions, inset: float) -> Solid:
+def palm_solid(
+    geometry: HandGeometry, flange: FlangeDimensions, d: Dimensions, inset: float
+) -> Solid:
     """The palm in the hand frame H; `inset` [mm] is that of the mounts in their primitives."""
     roots = [geometry.T_palm_root[finger] for finger in geometry.fingers]
-    below_roof = box((-FAR_MM,) * 3, (FAR_MM, FAR_MM, roof_height(geometry)))
-    body = union([*_bars_with_grooves(geometry, d, below_roof), *_mounts(geometry, inset)])
+    under = below_roof(geometry)
+    body = union([*_bars_with_grooves(geometry, d, under), *_mounts(geometry, inset)])
     for root in roots:
         sweeps = placed(_near_link_room(d), root), placed(_neck_room(d), root)
-        body = body.cut(*[sweep.intersect(below_roof) for sweep in sweeps])
+        body = body.cut(*[sweep.intersect(under) for sweep in sweeps])
         body = body.cut(placed(_turning_room(d), root), placed(_axle_hole(d), root))
         body = body.cut(placed(_palmar_room(d, root), root))
         body = body.cut(*[placed(channel, root) for channel in _channels(d, root)])
+    body = body.cut(*palm_seat(flange, d.clearance))
+    place = pad_place(geometry, flange)
+    if place is not None:
+        body = body.cut(*pad_recess(geometry, place, d))
     return _largest(body.clean())
 
 
 def _mounts(geometry: HandGeometry, inset: float) -> list[Solid]:
     """The primitives of each finger: what its ears are cut from."""
     own = [shape for shape in geometry.palm if shape.finger is not None]
-    return [_bar(shape, inset + n * 0.01) for n, shape in enumerate(own)]
+    return [palm_primitive(shape, inset + n * 0.01) for n, shape in enumerate(own)]
 
 
 def _largest(body: Solid) -> Solid:
@@ -92,7 +93,7 @@ def _channels(d: Dimensions, root: NDArray[np.float64]) -> list[Solid]:
     return found
 
 
-def _bars_with_grooves(geometry: HandGeometry, d: Dimensions, below_roof: Solid) -> list[Solid]:
+def _bars_with_grooves(geometry: HandGeometry, d: Dimensions, under: Solid) -> list[Solid]:
     """The palm's bars less all that the proximal links pass below the roof.
 
     What lies in any finger's root sphere stays: it ties that finger's ears to the roof.
@@ -100,39 +101,20 @@ def _bars_with_grooves(geometry: HandGeometry, d: Dimensions, below_roof: Solid)
     shapes = [shape for shape in geometry.palm if shape.finger is None]
     if not shapes:
         return []
-    bars = union([_bar(shape, n * INSET_STEP_MM) for n, shape in enumerate(shapes, start=1)])
+    bars = union(
+        [palm_primitive(shape, n * INSET_STEP_MM) for n, shape in enumerate(shapes, start=1)]
+    )
     roots = [geometry.T_palm_root[finger] for finger in geometry.fingers]
     kept = [ball(root[:3, 3], d.root - 2 * d.clearance) for root in roots]
     for root in roots:
-        groove = placed(_link_room(d, d.mcp_abd, d.proximal_length + d.skin_outer), root)
-        bars = bars.cut(groove.intersect(below_roof).cut(*kept))
+        groove = placed(link_room(d, d.mcp_abd, d.proximal_length + d.skin_outer), root)
+        bars = bars.cut(groove.intersect(under).cut(*kept))
     return [bars]
-
-
-def roof_height(geometry: HandGeometry) -> float:
-    """Height z [mm] in H up to which the fingers' cavities may reach."""
-    tops = [max(s.start_mm[2], s.end_mm[2]) + s.radius_mm for s in geometry.palm]
-    return float(max(tops)) - ROOF_MM
-
-
-def _bar(shape: PalmShape, inset: float) -> Solid:
-    radius = shape.radius_mm - inset
-    if np.allclose(shape.start_mm, shape.end_mm):
-        return ball(shape.start_mm, radius)
-    return capsule(shape.start_mm, shape.end_mm, radius)
-
-
-def _link_room(d: Dimensions, abduction: Interval, far: float) -> Solid:
-    """What the proximal link with its skin passes, up to a distance `far` from the root."""
-    half = d.skin_outer + d.clearance
-    widest = max(abs(angle) for angle in abduction)
-    near = d.shaft_start * math.cos(widest) - half * math.sin(widest)
-    return swept_link((max(near, 0.0), far), half, half, d.mcp_flex, abduction)
 
 
 def _near_link_room(d: Dimensions) -> Solid:
     """What the link passes in pure flexion close to its root: it cuts only its neighbours' ears."""
-    room = _link_room(d, (0.0, 0.0), 2 * d.root)
+    room = link_room(d, (0.0, 0.0), 2 * d.root)
     return room.cut(ball((0, 0, 0), d.root - d.clearance / 2))
 
 

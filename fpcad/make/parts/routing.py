@@ -17,8 +17,12 @@ from fpcad.make.parts.mcp_dimensions import Mcp
 
 Array = NDArray[np.float64]
 
+TUBE = "PTFE-1x2"
+"""The tubes in which strands leave the palm."""
 EXIT_MM = 20.0
 """Distance from the flexion axis at which strands have left the palm."""
+TUBE_SEAT_MM = 15.5
+"""Distance from the flexion axis from which a strand's way is as wide as its tube."""
 EXIT_SIDE_MM = 3.0
 """Strands of one pulley leave the palm that far to both sides of its middle."""
 GUIDE_MM = 11.4

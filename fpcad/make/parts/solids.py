@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.make.toolchain import cadquery
+from fpcad.model.geometry import PalmShape
 
 Solid = Any
 """A cadquery shape; untyped because cadquery is imported on first use."""
@@ -43,6 +44,14 @@ def box(low: Point, high: Point) -> Solid:
 def capsule(start: Point, end: Point, radius: float) -> Solid:
     """A cylinder with hemispheres about both ends."""
     return rod(start, end, radius).fuse(ball(start, radius), ball(end, radius))
+
+
+def palm_primitive(shape: PalmShape, inset: float) -> Solid:
+    """A primitive of the palm in H, its surface moved inwards by `inset` [mm]."""
+    radius = shape.radius_mm - inset
+    if np.allclose(shape.start_mm, shape.end_mm):
+        return ball(shape.start_mm, radius)
+    return capsule(shape.start_mm, shape.end_mm, radius)
 
 
 def union(solids: Sequence[Solid]) -> Solid:
