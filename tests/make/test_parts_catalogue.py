@@ -8,8 +8,10 @@ from fpcad.errors import FpcadError
 from fpcad.make.parts.catalogue import (
     TABLES,
     Bearing,
+    Flange,
     Insert,
     MotorBody,
+    Nut,
     Pin,
     Screw,
     Tendon,
@@ -40,10 +42,17 @@ def solid_of(row: object) -> Solid:
         case Screw():
             head = rod((0, 0, -row.head_height_mm), (0, 0, 0.1), row.head_diameter_mm / 2)
             return along_z(max(row.lengths_mm), row.thread_mm).fuse(head)
+        case Nut():
+            return along_z(row.height_mm, row.across_flats_mm, row.thread_mm)
         case Tube():
             return along_z(100.0, row.outer_mm, row.inner_mm)
         case Tendon():
             return along_z(100.0, row.diameter_mm)
+        case Flange():
+            disc = along_z(row.disc_mm, row.outer_mm)
+            return disc.fuse(
+                rod((0, 0, 0), (0, 0, row.disc_mm + row.boss_height_mm), row.boss_mm / 2)
+            )
         case MotorBody():
             return box((0, 0, 0), (row.width_mm, row.height_mm, row.depth_mm))
     raise AssertionError(f"no solid for {row}")

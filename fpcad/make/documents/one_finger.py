@@ -17,7 +17,7 @@ from fpcad.make.gates.finding import refuse_errors
 from fpcad.make.gates.mesh import check_mesh
 from fpcad.make.mesh import manifold_of
 from fpcad.make.parts.assembly import Assembly
-from fpcad.make.parts.part import FIXED_LINK, Part
+from fpcad.make.parts.part import STILL_LINKS, Part
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
 
@@ -37,8 +37,12 @@ def write_finger(
     if finger not in geometry.fingers:
         raise SpecError(f'no finger "{finger}"; allowed: {", ".join(geometry.fingers)}')
     fingers = len(geometry.fingers)
-    own = [replace(p, count=p.count // fingers) for p in assembly.parts if p.link != FIXED_LINK]
-    bought = [replace(i, count=i.count // fingers) for i in assembly.bought if i.link != FIXED_LINK]
+    own = [
+        replace(p, count=p.count // fingers) for p in assembly.parts if p.link not in STILL_LINKS
+    ]
+    bought = [
+        replace(i, count=i.count // fingers) for i in assembly.bought if i.link not in STILL_LINKS
+    ]
     palm = next((part for part in assembly.parts if part.name == PALM), None)
     if palm is None:
         raise MakeError(f"{finger}: there is no palm to cut a mount from")

@@ -12,7 +12,7 @@ import numpy as np
 from fpcad.errors import MakeError, StoreError
 from fpcad.make.gates.bodies import link_poses
 from fpcad.make.parts.assembly import Assembly
-from fpcad.make.parts.part import FIXED_LINK
+from fpcad.make.parts.part import STILL_LINKS
 from fpcad.make.parts.solids import Solid
 from fpcad.make.parts.step import step_bytes
 from fpcad.make.toolchain import cadquery
@@ -44,7 +44,7 @@ def assembly_step(assembly: Assembly, geometry: HandGeometry, title: str) -> byt
     whole = cq.Assembly(name=title)
     straight = np.zeros((1, 3))
     for part in assembly.parts:
-        fingers = (None,) if part.link == FIXED_LINK else geometry.fingers
+        fingers = (None,) if part.link in STILL_LINKS else geometry.fingers
         for finger in fingers:
             pose = np.eye(4)
             if finger is not None:

@@ -16,7 +16,7 @@ from fpcad.make.documents.stamp import Stamp
 from fpcad.make.gates.bodies import link_poses
 from fpcad.make.mesh import manifold_of
 from fpcad.make.parts.assembly import Assembly, BoughtItem
-from fpcad.make.parts.part import FIXED_LINK
+from fpcad.make.parts.part import STILL_LINKS
 from fpcad.make.toolchain import pyvista
 from fpcad.model.geometry import HandGeometry
 
@@ -53,7 +53,7 @@ def hand_pieces(assembly: Assembly, geometry: HandGeometry, joints: Array) -> li
     pieces = []
     for item in (*assembly.parts, *assembly.bought):
         poses = [np.eye(4)]
-        if item.link != FIXED_LINK:
+        if item.link not in STILL_LINKS:
             poses = [
                 link_poses(geometry, finger, item.link, joints[None, i])[0]
                 for i, finger in enumerate(geometry.fingers)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import manifold3d
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from fpcad.make.mesh import manifold_of
 from fpcad.make.parts.assembly import Assembly, BoughtItem
-from fpcad.make.parts.part import FIXED_LINK
+from fpcad.make.parts.part import STILL_LINKS
 from fpcad.model.geometry import HandGeometry
 
 Array = NDArray[np.float64]
@@ -21,6 +23,7 @@ POINTS_PER_MM2 = 1.5
 SPREAD_MM = 3.0
 """No point of a surface with that many random points is farther than this from the nearest one."""
 SEED = 1
+TOOL = "tool"
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,7 @@ class Body:
 
     part: str
     link: str
-    """`palm`, `mcp`, `proximal`, `distal` or `tool`."""
+    """`palm`, `mcp`, `proximal`, `distal`, `tool`, or `box` where the motors stand elsewhere."""
     finger: str | None
     """None for what belongs to the palm, and for the tool."""
     bought: bool
@@ -39,13 +42,29 @@ class Body:
     """(2, 3) ends of a segment in the link's frame [mm]."""
     radius: float
     """The body lies within this distance [mm] of the segment."""
-    points: Array
-    """(n, 3) points spread over the surface [mm], in the link's frame; of the palm's bodies only."""
 
     @property
     def name(self) -> str:
         """The part's name, with the finger's before it."""
         return f"{self.finger} {self.part}" if self.finger else self.part
+
+    @property
+    def still(self) -> bool:
+        """Whether it belongs to no finger and is not the tool: its link's frame is H."""
+        return self.finger is None and self.link != TOOL
+
+    @cached_property
+    def box(self) -> Array:
+        """(2, 3) least and greatest coordinates [mm] in the link's frame."""
+        return np.array(self.solid.bounding_box()).reshape(2, 3)
+
+    @cached_property
+    def surface(self) -> KDTree:
+        """Points spread over the surface [mm], in the link's frame; none is farther than SPREAD_MM from the next."""
+        mesh = _mesh_of(self.solid)
+        count = int(POINTS_PER_MM2 * mesh.area) + 50
+        spread = trimesh.sample.sample_surface(mesh, count, seed=SEED)[0]
+        return KDTree(np.vstack([mesh.vertices, spread]))
 
 
 def body_of(
@@ -53,8 +72,7 @@ def body_of(
 ) -> Body:
     """A mesh [mm] in its link's frame as a body."""
     axis, radius = min(_capsules(np.asarray(mesh.vertices)), key=lambda capsule: capsule[1])
-    points = _spread(mesh) if link == "palm" else np.empty((0, 3))
-    return Body(part, link, finger, bought, manifold_of(mesh), axis, radius, points)
+    return Body(part, link, finger, bought, manifold_of(mesh), axis, radius)
 
 
 def merged(bodies: Sequence[Body], name: str) -> Body:
@@ -70,16 +88,14 @@ def union(solids: Sequence[manifold3d.Manifold]) -> manifold3d.Manifold:
 
 def body_of_solid(part: str, link: str, solid: manifold3d.Manifold) -> Body:
     """A solid [mm] in its link's frame as a body."""
+    vertices = np.asarray(_mesh_of(solid).vertices)
+    axis, radius = min(_capsules(vertices), key=lambda capsule: capsule[1])
+    return Body(part, link, None, False, solid, axis, radius)
+
+
+def _mesh_of(solid: manifold3d.Manifold) -> trimesh.Trimesh:
     raw = solid.to_mesh64()
-    mesh = trimesh.Trimesh(raw.vert_properties[:, :3], raw.tri_verts, process=False)
-    axis, radius = min(_capsules(np.asarray(mesh.vertices)), key=lambda capsule: capsule[1])
-    points = _spread(mesh) if link == "palm" else np.empty((0, 3))
-    return Body(part, link, None, False, solid, axis, radius, points)
-
-
-def _spread(mesh: trimesh.Trimesh) -> Array:
-    count = int(POINTS_PER_MM2 * mesh.area) + 50
-    return np.vstack([mesh.vertices, trimesh.sample.sample_surface(mesh, count, seed=SEED)[0]])
+    return trimesh.Trimesh(raw.vert_properties[:, :3], raw.tri_verts, process=False)
 
 
 def hand_bodies(assembly: Assembly, geometry: HandGeometry) -> list[Body]:
@@ -87,7 +103,7 @@ def hand_bodies(assembly: Assembly, geometry: HandGeometry) -> list[Body]:
     bodies = []
     for item in (*assembly.parts, *assembly.bought):
         bought = isinstance(item, BoughtItem)
-        fingers = (None,) if item.link == FIXED_LINK else geometry.fingers
+        fingers = (None,) if item.link in STILL_LINKS else geometry.fingers
         for place in item.places:
             mesh = item.mesh.copy().apply_transform(place)
             first = body_of(item.name, item.link, mesh, fingers[0], bought)
@@ -133,7 +149,9 @@ def _capsules(vertices: Array) -> Iterator[tuple[Array, float]]:
     for origin, direction in ((np.zeros(3), np.eye(3)[0]), *((middle, own[i]) for i in range(3))):
         along = (vertices - origin) @ direction
         radial = np.linalg.norm(vertices - origin - np.outer(along, direction), axis=1)
-        reach = np.sqrt(radial.max() ** 2 - radial**2)  # how far the balls at the ends may cover
+        reach = np.sqrt(
+            np.maximum(radial.max() ** 2 - radial**2, 0.0)
+        )  # how far the balls at the ends may cover
         low, high = float((along + reach).min()), float((along - reach).max())
         if low > high:
             low = high = (low + high) / 2

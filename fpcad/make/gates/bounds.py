@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from fpcad.make.gates.bodies import SPREAD_MM, Body
 from fpcad.make.grip import segment_distance
@@ -22,20 +21,33 @@ def least_distance(a: Body, T_a: Array, b: Body, T_b: Array) -> Array:
     apart = segment_distance(ends_a[:, 0], ends_a[:, 1], ends_b[:, 0], ends_b[:, 1])
     bound = apart - a.radius - b.radius
     near = np.flatnonzero(bound <= 0)
-    if len(a.points) and len(near):
+    if a.still and len(near):
         bound[near] = np.maximum(bound[near], surface_distance(a, b, T_b[near]))
     return bound
 
 
+def swept_box(body: Body, T: Array) -> Array:
+    """(2, 3) box [mm] in H that holds a body at all of the poses (N, 4, 4)."""
+    if body.still:
+        return body.box
+    ends = _moved(body.axis, T).reshape(-1, 3)
+    return np.stack([ends.min(axis=0) - body.radius, ends.max(axis=0) + body.radius])
+
+
+def box_gap(a: Array, b: Array) -> float:
+    """Lower bound [mm] of the distance of what two boxes (2, 3) hold; negative where they overlap."""
+    return float(np.max([b[0] - a[1], a[0] - b[1]]))
+
+
 def surface_distance(still: Body, b: Body, T_b: Array) -> Array:
-    """Lower bound (N,) [mm] of the distance to a body with points that stands still at the origin.
+    """Lower bound (N,) [mm] of the distance to a body that stands still at the origin.
 
     A body deep inside of it counts as apart; it has met the surface before.
     """
     length = float(np.linalg.norm(b.axis[1] - b.axis[0]))
     along = np.linspace(b.axis[0], b.axis[1], 2 + int(length / AXIS_SPACING_MM))
     reach = b.radius + SPREAD_MM + length / (len(along) - 1) / 2
-    nearest, _ = KDTree(still.points).query(
+    nearest, _ = still.surface.query(
         _moved(along, T_b).reshape(-1, 3), distance_upper_bound=reach + TOLD_BOUND_MM
     )
     gap = nearest.reshape(len(T_b), -1).min(axis=1)

@@ -10,6 +10,7 @@ from fpcad.errors import MakeError
 from fpcad.make.gates.postures import rest_joints
 from fpcad.make.grip import ContactLink, link_axis, segment_distance
 from fpcad.make.parts.dimensions import finger_dimensions
+from fpcad.make.parts.mounting import flange_and_box
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
 
@@ -18,7 +19,7 @@ LINKS = ("proximal", "distal")
 
 def check_early(spec: Spec, geometry: HandGeometry) -> None:
     """Raise :class:`MakeError` with the reason why a design cannot be made, if one shows already."""
-    finger_dimensions(spec, geometry)
+    flange_and_box(spec, geometry, finger_dimensions(spec, geometry))
     _check_rest(spec, geometry)
 
 

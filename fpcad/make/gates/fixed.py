@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from fpcad.make.gates.bodies import Body
+from fpcad.make.gates.bounds import box_gap
 from fpcad.make.gates.finding import Finding, Severity, point
 from fpcad.make.gates.meeting import LEAST_SEARCH_MM, meet
 from fpcad.model.geometry import HandGeometry
@@ -25,6 +26,8 @@ def check_fixed(bodies: Sequence[Body], geometry: HandGeometry) -> list[Finding]
         if (a.finger, a.link) != (b.finger, b.link) or a.finger not in (None, geometry.fingers[0]):
             continue
         if a.bought and b.bought:  # screws sit in inserts, pins in bearings
+            continue
+        if box_gap(a.box, b.box) > LEAST_SEARCH_MM:
             continue
         _, shared = meet(a, here, b, here, LEAST_SEARCH_MM)
         if shared is None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.make.gates.bodies import Body, body_poses
-from fpcad.make.gates.bounds import least_distance
+from fpcad.make.gates.bounds import box_gap, least_distance, swept_box
 from fpcad.make.gates.finding import Finding, Severity, point
 from fpcad.make.gates.meeting import meet
 from fpcad.make.gates.postures import STEP_RAD
@@ -45,7 +45,9 @@ def check_joints(bodies: Sequence[Body], geometry: HandGeometry, hand: Hand) -> 
         joints = _postures(hand, geometry, grids, moving)
         T_a, T_b = (body_poses(body, geometry, joints) for body in (a, b))
         between = f"{a.link} and {b.link}"
-        gap, closest = least.get(between, (TOLD_MM, "none closer"))
+        gap, closest = least.setdefault(between, (TOLD_MM, "none closer"))
+        if box_gap(swept_box(a, T_a), swept_box(b, T_b)) > gap:
+            continue
         for k in np.flatnonzero(least_distance(a, T_a, b, T_b) < gap):
             own, shared = meet(a, T_a[k], b, T_b[k], gap)
             if shared is not None:

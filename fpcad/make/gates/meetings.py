@@ -13,8 +13,8 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from fpcad.make.gates.bodies import Body, body_of, body_poses
-from fpcad.make.gates.bounds import least_distance
+from fpcad.make.gates.bodies import TOOL, Body, body_of, body_poses
+from fpcad.make.gates.bounds import box_gap, least_distance, swept_box
 from fpcad.make.gates.finding import Finding, Severity, point
 from fpcad.make.gates.meeting import meet
 from fpcad.make.gates.postures import Postures
@@ -37,8 +37,8 @@ def tool_bodies(spec: Spec) -> dict[bool, Body]:
     """The tool as it is, and as it is to the links that touch it (True): slimmer by what they may dip."""
     dip = CONTACT_MM + spec.print.skin_oversize_mm
     return {
-        False: body_of("tool", "tool", tool_mesh(spec.tool, 0.0)),
-        True: body_of("tool", "tool", tool_mesh(spec.tool, dip)),
+        False: body_of(TOOL, TOOL, tool_mesh(spec.tool, 0.0)),
+        True: body_of(TOOL, TOOL, tool_mesh(spec.tool, dip)),
     }
 
 
@@ -60,11 +60,17 @@ def check_meetings(
 ) -> list[Finding]:
     """Overlaps over a set of postures, and the least clearance where there is none."""
     poses = {id(body): body_poses(body, geometry, postures.joints) for body in bodies}
+    present = list(bodies)
+    if postures.tool is not None:
+        present += tools.values()
+        poses |= {id(tool): postures.tool for tool in tools.values()}
+    boxes = {id(body): swept_box(body, poses[id(body)]) for body in present}
     found: list[Finding] = []
     least, closest = TOLD_MM, "none closer"
     for a, b in _pairs(bodies, tools, postures):
-        T_a = poses[id(a)]
-        T_b = poses[id(b)] if b.link != "tool" else np.asarray(postures.tool)
+        if box_gap(boxes[id(a)], boxes[id(b)]) > least:
+            continue
+        T_a, T_b = poses[id(a)], poses[id(b)]
         near = np.flatnonzero(least_distance(a, T_a, b, T_b) < least)
         for k in near:
             gap, shared = meet(a, T_a[k], b, T_b[k], least)
@@ -97,7 +103,7 @@ def _pairs(
 
 
 def _touches(a: Body, b: Body, postures: Postures) -> bool:
-    return b.link == "tool" and (a.finger, a.link) in postures.touching
+    return b.link == TOOL and (a.finger, a.link) in postures.touching
 
 
 def _meeting(

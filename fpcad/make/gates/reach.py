@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.make.gates.bodies import Body, body_of_solid, body_poses, link_poses, merged, union
-from fpcad.make.gates.bounds import surface_distance
+from fpcad.make.gates.bounds import box_gap, surface_distance, swept_box
 from fpcad.make.gates.finding import Finding, Point, Severity, point
 from fpcad.make.gates.joints import joint_grid
 from fpcad.make.gates.meeting import LEAST_SEARCH_MM, meet
@@ -91,11 +91,18 @@ class Sweep:
         links = sorted({body.link for body in own})
         self._moving = [merged([b for b in own if b.link == link], link) for link in links]
         self._own = own
-        self._still = [body for body in bodies if body.finger != finger]
+        u = np.stack(np.meshgrid(*self.grids, indexing="ij"), axis=-1).reshape(-1, 3)
+        self._swept = [swept_box(b, link_poses(geometry, finger, b.link, u)) for b in self._moving]
         at_rest = np.tile(self.rest, (1, len(geometry.fingers), 1))
-        self._T_still = [body_poses(body, geometry, at_rest)[0] for body in self._still]
-        placed = [b.solid.transform(T[:3]) for b, T in zip(self._still, self._T_still, strict=True)]
+        others = [(b, body_poses(b, geometry, at_rest)) for b in bodies if b.finger != finger]
+        near = [(b, T[0]) for b, T in others if self._in_reach(swept_box(b, T))]
+        self._still, self._T_still = [b for b, _ in near], [T for _, T in near]
+        placed = [b.solid.transform(T[:3]) for b, T in near]
         self._obstacle = body_of_solid("obstacles", "palm", union(placed))
+
+    def _in_reach(self, box: Array) -> bool:
+        """Whether the finger's links may come to a box (2, 3) [mm] at any angles of its joints."""
+        return any(box_gap(box, swept) <= 0 for swept in self._swept)
 
     def walk(self, joint: int, every: int) -> Walk:
         """Flexion to both sides of rest, and another joint from each so-many-th of its free angles."""

@@ -17,8 +17,9 @@ from fpcad.make.parts.bone import distal_bone, proximal_bone
 from fpcad.make.parts.bought import BoughtItem, finger_items
 from fpcad.make.parts.differential import idler_pulley, input_pulley, ip_drum, mcp_cross
 from fpcad.make.parts.dimensions import Dimensions, finger_dimensions
-from fpcad.make.parts.flange import flange_items, flange_solid
-from fpcad.make.parts.flange_dimensions import FlangeDimensions, flange_dimensions
+from fpcad.make.parts.flange import flange_solid
+from fpcad.make.parts.flange_dimensions import FlangeDimensions
+from fpcad.make.parts.mounting import mounting
 from fpcad.make.parts.palm import MOUNT_INSETS_MM, palm_solid
 from fpcad.make.parts.palm_pad import NAME as PAD
 from fpcad.make.parts.palm_pad import pad_place, pad_solid
@@ -28,7 +29,7 @@ from fpcad.make.parts.solids import Solid
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
 
-__all__ = ["Assembly", "BoughtItem", "Progress", "make_assembly", "make_parts"]
+__all__ = ["Assembly", "BoughtItem", "Progress", "make_assembly"]
 
 SKIN_MESH = {"mesh_tolerance_mm": 0.02, "mesh_angle_deg": 5.7}
 """Skins are meshed finer than the rest: their surface is what touches the tool."""
@@ -50,20 +51,22 @@ class Assembly:
 def make_assembly(spec: Spec, geometry: HandGeometry, progress: Progress) -> Assembly:
     """Everything of a hand; raises :class:`fpcad.errors.MakeError` with the reason otherwise."""
     d = finger_dimensions(spec, geometry)
-    flange = flange_dimensions(spec.mount, geometry, d)
-    items = (*finger_items(d, len(geometry.fingers)), *flange_items(flange))
-    return Assembly(tuple(make_parts(spec, geometry, progress)), items)
+    mount = mounting(spec, geometry, d)
+    parts = _hand_parts(spec, geometry, d, mount.flange, progress)
+    progress("motor box")
+    parts += mount.parts()
+    return Assembly(tuple(parts), (*finger_items(d, len(geometry.fingers)), *mount.items()))
 
 
-def make_parts(spec: Spec, geometry: HandGeometry, progress: Progress) -> list[Part]:
-    """All printed parts of a hand; parts that fingers share are made once."""
-    d, fingers = finger_dimensions(spec, geometry), len(geometry.fingers)
-    flange = flange_dimensions(spec.mount, geometry, d)
+def _hand_parts(
+    spec: Spec, geometry: HandGeometry, d: Dimensions, flange: FlangeDimensions, progress: Progress
+) -> list[Part]:
+    """Fingers, palm and flange; parts that fingers share are made once."""
     parts = []
-    for plan in _plans(spec, geometry, flange):
+    for plan in _plans(geometry, flange):
         progress(plan.name)
         solid, mesh = _made(plan, d, spec)
-        count = len(plan.places) * (1 if plan.link == FIXED_LINK else fingers)
+        count = len(plan.places) * (1 if plan.link == FIXED_LINK else len(geometry.fingers))
         parts.append(
             Part(plan.name, plan.link, plan.material, count, solid, mesh, plan.places, plan.T_bed)
         )
@@ -96,7 +99,7 @@ class _Plan:
     T_bed: Array = field(default_factory=lambda: np.eye(4))
 
 
-def _plans(spec: Spec, geometry: HandGeometry, flange: FlangeDimensions) -> list[_Plan]:
+def _plans(geometry: HandGeometry, flange: FlangeDimensions) -> list[_Plan]:
     axis_up, on_end = turned("x", 90.0), turned("y", 90.0)
     palms = tuple(partial(palm_solid, geometry, flange, inset=inset) for inset in MOUNT_INSETS_MM)
     both_sides = (np.eye(4), turned("z", 180.0))
@@ -106,7 +109,7 @@ def _plans(spec: Spec, geometry: HandGeometry, flange: FlangeDimensions) -> list
             "flange",
             "palm",
             "endoskeleton",
-            (lambda d: flange_solid(flange, geometry, d.clearance),),
+            (partial(flange_solid, flange, geometry),),
         ),
         *_pad_plans(geometry, flange),
         _Plan("mcp_cross", "mcp", "endoskeleton", (mcp_cross,), T_bed=on_end),

@@ -1,4 +1,4 @@
-"""What is bought: bearings, pins, screws, inserts, tendons, tubes, flanges, motor bodies; data/*.csv has the sizes."""
+"""What is bought: bearings, pins, screws, inserts, nuts, tendons, tubes, motors, flanges; data/*.csv has the sizes."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from fpcad.errors import MakeError
 from fpcad.spec.faults import near_miss
 
 STEEL_G_MM3 = 7.85e-3
+BRASS_G_MM3 = 8.5e-3
 
 
 class Row(BaseModel):
@@ -96,6 +97,27 @@ class Insert(Row):
     hole_mm: float = Field(gt=0)
     least_wall_mm: float = Field(gt=0)
 
+    @property
+    def mass_g(self) -> float:
+        """Mass [g], its knurls neglected."""
+        ring = math.pi / 4 * (self.outer_mm**2 - self.thread_mm**2)
+        return ring * self.length_mm * BRASS_G_MM3
+
+
+class Nut(Row):
+    """A hexagon nut."""
+
+    thread_mm: float = Field(gt=0)
+    across_flats_mm: float = Field(gt=0)
+    height_mm: float = Field(gt=0)
+
+    @property
+    def mass_g(self) -> float:
+        """Mass [g] of a nut of steel, its chamfers neglected."""
+        hexagon = math.sqrt(3) / 2 * self.across_flats_mm**2
+        hole = math.pi / 4 * self.thread_mm**2
+        return (hexagon - hole) * self.height_mm * STEEL_G_MM3
+
 
 class Tendon(Row):
     """A braided line."""
@@ -131,7 +153,10 @@ class Flange(Row):
 
 
 class MotorBody(BaseModel):
-    """Envelope of a motor: width x height across the shaft, depth along it, horn included."""
+    """Envelope of a motor: width x height across the shaft, depth along it, horn included.
+
+    The horn stands out of one face; its screws sit on a circle about the shaft.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -141,10 +166,15 @@ class MotorBody(BaseModel):
     depth_mm: float = Field(gt=0)
     shaft_from_end_mm: float = Field(gt=0)
     """From the nearer end of the height to the shaft's axis."""
+    horn_height_mm: float = Field(gt=0)
+    """Of the depth: what the horn stands out."""
     horn_diameter_mm: float = Field(gt=0)
     horn_circle_mm: float = Field(gt=0)
     """Diameter of the circle of the horn's four screws."""
     horn_screw: str
+    """Row of the table of screws; so is the next one."""
+    centre_screw: str
+    """The screw along the shaft, which holds the horn."""
     gap_mm: float = Field(gt=0)
     """Room that a printed pocket leaves on each side."""
     source: str
@@ -155,6 +185,7 @@ TABLES: dict[str, type[BaseModel]] = {
     "pins": Pin,
     "screws": Screw,
     "inserts": Insert,
+    "nuts": Nut,
     "tendons": Tendon,
     "tubes": Tube,
     "flanges": Flange,

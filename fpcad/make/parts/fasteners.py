@@ -1,4 +1,8 @@
-"""Screws and heat-set inserts as bought items, each with its axis along z of its own frame."""
+"""Meshes of screws, nuts and inserts: their envelopes, for checks of interference and pictures.
+
+Each in its own frame [mm], z along the thread: a screw's head ends at z = 0 and its shank begins there; a
+nut and an insert begin at z = 0.
+"""
 
 from __future__ import annotations
 
@@ -7,36 +11,31 @@ import math
 import numpy as np
 import trimesh
 
-from fpcad.make.parts.bought import SECTIONS, BoughtItem
-from fpcad.make.parts.catalogue import Insert, Screw
-from fpcad.make.parts.part import Array
+from fpcad.make.parts.catalogue import Insert, Nut, Screw
 
-BRASS_G_MM3 = 8.5e-3
+SECTIONS = 32
 
 
-def screw_item(
-    name: str, screw: Screw, length: float, link: str, places: tuple[Array, ...]
-) -> BoughtItem:
-    """Socket head screws of a length [mm]: z = 0 lies under the head, the shank points to -z."""
-    outline = [
-        (0.0, -length),
-        (screw.thread_mm / 2, -length),
-        (screw.thread_mm / 2, 0.0),
-        (screw.head_diameter_mm / 2, 0.0),
-        (screw.head_diameter_mm / 2, screw.head_height_mm),
-        (0.0, screw.head_height_mm),
-    ]
-    mesh = trimesh.creation.revolve(np.array(outline), sections=SECTIONS)
-    mass = screw.mass_g(length)
-    return BoughtItem(
-        name, "screws", screw.size, link, places, len(places), mass, mesh, length_mm=length
-    )
+def screw_mesh(screw: Screw, length_mm: float) -> trimesh.Trimesh:
+    """A socket head cap screw without its socket."""
+    head, shank, z = screw.head_diameter_mm / 2, screw.thread_mm / 2, screw.head_height_mm
+    outline = [(0, -z), (head, -z), (head, 0), (shank, 0), (shank, length_mm), (0, length_mm)]
+    return trimesh.creation.revolve(np.array(outline, dtype=float), sections=SECTIONS)
 
 
-def insert_item(name: str, insert: Insert, link: str, places: tuple[Array, ...]) -> BoughtItem:
-    """Heat-set inserts: z = 0 is the mouth, flush with the part, the rest points to -z."""
-    mesh = trimesh.creation.cylinder(insert.outer_mm / 2, insert.length_mm, sections=SECTIONS)
-    mesh.apply_translation((0.0, 0.0, -insert.length_mm / 2))
-    ring = math.pi / 4 * (insert.outer_mm**2 - insert.thread_mm**2)
-    mass = ring * insert.length_mm * BRASS_G_MM3
-    return BoughtItem(name, "inserts", insert.size, link, places, len(places), mass, mesh)
+def insert_mesh(insert: Insert) -> trimesh.Trimesh:
+    """A heat-set insert, its bore filled."""
+    return _from_zero(insert.outer_mm / 2, insert.length_mm, SECTIONS)
+
+
+def nut_mesh(nut: Nut) -> trimesh.Trimesh:
+    """A hexagon nut, its bore filled; two of its flats face x."""
+    corner = nut.across_flats_mm / 2 / math.cos(math.pi / 6)
+    mesh = _from_zero(corner, nut.height_mm, 6)
+    return mesh.apply_transform(trimesh.transformations.rotation_matrix(math.pi / 6, [0, 0, 1]))
+
+
+def _from_zero(radius: float, height: float, sections: int) -> trimesh.Trimesh:
+    mesh = trimesh.creation.cylinder(radius, height, sections=sections)
+    mesh.apply_translation((0, 0, height / 2))
+    return mesh

@@ -7,7 +7,9 @@ import math
 import numpy as np
 
 from fpcad.make.parts.bought import BoughtItem
-from fpcad.make.parts.fasteners import insert_item, screw_item
+from fpcad.make.parts.catalogue import Insert, Screw
+from fpcad.make.parts.dimensions import Dimensions
+from fpcad.make.parts.fasteners import insert_mesh, screw_mesh
 from fpcad.make.parts.flange_dimensions import KEY_MM, PAD_MM, STEM_MM, FlangeDimensions
 from fpcad.make.parts.part import FIXED_LINK, Array
 from fpcad.make.parts.solids import Solid, box, palm_primitive, placed, rod
@@ -15,11 +17,11 @@ from fpcad.make.toolchain import cadquery
 from fpcad.model.geometry import HandGeometry
 
 
-def flange_solid(f: FlangeDimensions, geometry: HandGeometry, clearance: float) -> Solid:
-    """The flange in H; its boss is slimmer than its recess by `clearance` [mm] in diameter."""
+def flange_solid(f: FlangeDimensions, geometry: HandGeometry, d: Dimensions) -> Solid:
+    """The flange in H; its boss is slimmer than its recess by the print's clearance, in diameter."""
     foot = placed(_foot(f), f.T_palm_foot)
     foot = foot.cut(*[palm_primitive(shape, 0.0) for shape in geometry.palm])
-    above = placed(_tongue(f).fuse(_stem(f), _disc(f, clearance)), f.T_palm_foot)
+    above = placed(_tongue(f).fuse(_stem(f), _disc(f, d.clearance)), f.T_palm_foot)
     holes = [placed(hole, f.T_palm_foot) for hole in (*_foot_holes(f), *_disc_holes(f))]
     return foot.fuse(above).cut(*holes).clean()
 
@@ -35,19 +37,26 @@ def palm_seat(f: FlangeDimensions, clearance: float) -> list[Solid]:
 
 def flange_items(f: FlangeDimensions) -> tuple[BoughtItem, ...]:
     """Inserts and screws of the foot, and the screws of the disc with their heads towards the hand."""
-    on_seat = [_place(f, s, 0.0, 0.0) for s in _both(f.screw_at)]
-    on_pad = [_place(f, s, 0.0, PAD_MM) for s in _both(f.screw_at)]
-    upside_down = np.diag([1.0, -1.0, -1.0, 1.0])
-    under_disc = [
-        _place(f, x, y, f.stem - f.flange.disc_mm) @ upside_down for x, y in f.screw_places
-    ]
+    down = np.diag([1.0, -1.0, -1.0, 1.0])
+    seat = tuple(_place(f, s, 0.0, 0.0) @ down for s in _both(f.screw_at))
+    pad = tuple(_place(f, s, 0.0, PAD_MM) @ down for s in _both(f.screw_at))
+    under = f.stem - f.flange.disc_mm
+    disc = tuple(_place(f, x, y, under) for x, y in f.screw_places)
     return (
-        insert_item("flange_insert", f.insert, FIXED_LINK, tuple(on_seat)),
-        screw_item("flange_foot_screw", f.screw, f.screw_length, FIXED_LINK, tuple(on_pad)),
-        screw_item(
-            "flange_screw", f.flange_screw, f.flange_screw_length, FIXED_LINK, tuple(under_disc)
-        ),
+        _insert("flange_foot_insert", f.insert, seat),
+        _screw("flange_foot_screw", f.screw, f.screw_length, pad),
+        _screw("flange_screw", f.flange_screw, f.flange_screw_length, disc),
     )
+
+
+def _screw(name: str, row: Screw, length: float, places: tuple[Array, ...]) -> BoughtItem:
+    mesh, mass, count = screw_mesh(row, length), row.mass_g(length), len(places)
+    return BoughtItem(name, "screws", row.size, FIXED_LINK, places, count, mass, mesh, length)
+
+
+def _insert(name: str, row: Insert, places: tuple[Array, ...]) -> BoughtItem:
+    mesh, count = insert_mesh(row), len(places)
+    return BoughtItem(name, "inserts", row.size, FIXED_LINK, places, count, row.mass_g, mesh)
 
 
 def _both(x: float) -> tuple[float, float]:

@@ -96,8 +96,13 @@ class FlangeDimensions:
         return tuple((radius * math.cos(a), radius * math.sin(a)) for a in angles)
 
 
-def flange_dimensions(mount: Mount, geometry: HandGeometry, d: Dimensions) -> FlangeDimensions:
-    """The flange of a hand; raises :class:`MakeError` with figures where its foot has no room."""
+def flange_dimensions(
+    mount: Mount, geometry: HandGeometry, d: Dimensions, nut_mm: float
+) -> FlangeDimensions:
+    """The flange of a hand; raises :class:`MakeError` with figures where its foot has no room.
+
+    `nut_mm` is how far behind the face the nuts of the motors' box end.
+    """
     screw, insert = lookup("screws", Screw, FOOT_SCREW), lookup("inserts", Insert, FOOT_SCREW)
     flange = lookup("flanges", Flange, mount.flange)
     screw_at = STEM_MM + KEY_MM + screw.head_diameter_mm / 2
@@ -119,7 +124,9 @@ def flange_dimensions(mount: Mount, geometry: HandGeometry, d: Dimensions) -> Fl
         stem=mount.stem_mm,
         flange=flange,
         flange_screw=flange_screw,
-        flange_screw_length=flange_screw.longest(flange.disc_mm + flange_screw.thread_mm),
+        flange_screw_length=flange_screw.shortest(flange.disc_mm + nut_mm)
+        if mount.box
+        else flange_screw.longest(flange.disc_mm + flange_screw.thread_mm),
     )
     _check_floor(found, geometry)
     return found

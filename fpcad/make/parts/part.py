@@ -18,6 +18,9 @@ Material = Literal["endoskeleton", "skin"]
 
 FIXED_LINK = "palm"
 """The one link that is no finger's: palm, flange and motor box are all fixed to it."""
+BOX_LINK = "box"
+"""No link of the robot: what belongs to a motor box that stands elsewhere, in the palm's frame."""
+STILL_LINKS = (FIXED_LINK, BOX_LINK)
 
 
 def in_place() -> tuple[Array, ...]:
@@ -36,7 +39,7 @@ class Placement:
 
 def placements(link: str, places: Iterable[Array], fingers: Iterable[str]) -> list[Placement]:
     """Every copy of what sits at `places` on the palm, or on the same link of each finger."""
-    names = [link] if link == FIXED_LINK else [f"{finger}_{link}" for finger in fingers]
+    names = [link] if link in STILL_LINKS else [f"{finger}_{link}" for finger in fingers]
     return [Placement(name, T) for name in names for T in places]
 
 
