@@ -12,7 +12,7 @@ from fpcad.make.gates.pad import bar_plan, check_pad, skin_share
 from fpcad.make.gates.wall import check_walls
 from fpcad.make.mesh import manifold_of
 from fpcad.make.parts.dimensions import finger_dimensions
-from fpcad.make.parts.flange_dimensions import flange_dimensions
+from fpcad.make.parts.mounting import flange_and_box
 from fpcad.make.parts.palm_pad import HEAD_MM, NAME, PLUG_MM, pad_place
 from tests.make.hands import CENTRE, CLAY, CORNERS, geometry_of
 
@@ -25,10 +25,17 @@ def pad(clay_parts):
     return clay_parts[NAME]
 
 
-def place_of(values, spec=CLAY):
-    geometry = geometry_of(values, spec)
-    d = finger_dimensions(spec, geometry)
-    return pad_place(geometry, flange_dimensions(spec.mount, geometry, d))
+def place_in(geometry, flanged):
+    """The pad's place in a hand, with the flange of another where that hand has no bar for one."""
+    flange, _ = flange_and_box(CLAY, flanged, finger_dimensions(CLAY, flanged))
+    return pad_place(geometry, flange)
+
+
+def place_of(values):
+    geometry = geometry_of(values)
+    place = place_in(geometry, geometry)
+    assert place is not None
+    return place
 
 
 def test_the_pad_lies_within_the_primitive_that_it_covers(pad):
@@ -63,8 +70,7 @@ def test_plugs_and_inserts_keep_apart(values):
 
 def test_a_palm_without_room_has_no_pad():
     short = replace(GEOMETRY, palm=tuple(s for s in GEOMETRY.palm if s.finger))
-    flange = flange_dimensions(CLAY.mount, GEOMETRY, finger_dimensions(CLAY, GEOMETRY))
-    assert pad_place(short, flange) is None
+    assert place_in(short, GEOMETRY) is None
 
 
 def test_the_share_that_skin_covers_is_told(clay_parts):
