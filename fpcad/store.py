@@ -78,7 +78,12 @@ def write_whole(target: Path, content: bytes | str) -> Path:
 
 def write_json(target: Path, value: Any) -> None:
     """Write JSON as a whole or not at all; numbers keep all their digits."""
-    write_whole(target, json.dumps(value, indent=2, allow_nan=False) + "\n")
+    write_whole(target, json_text(value))
+
+
+def json_text(value: Any) -> str:
+    """JSON as fpcad writes it; numbers keep all their digits."""
+    return json.dumps(value, indent=2, allow_nan=False) + "\n"
 
 
 def read_json(source: Path) -> Any:

@@ -13,6 +13,7 @@ from benchmarks.physics_hypothesis.run import run
 from fpcad.commands.console import ConsoleReporter
 from fpcad.pipeline.run import run_stages
 from fpcad.pipeline.stage import Build
+from fpcad.simulate.setting import TIME_STEP_S
 from fpcad.spec.load import load_spec
 from fpcad.spec.schema import Spec
 from fpcad.store import write_whole
@@ -28,7 +29,7 @@ def main() -> None:
     parser.add_argument("--hands", type=int, default=200)
     parser.add_argument("--build", type=Path, default=Path("build/physics"))
     parser.add_argument("--workers", type=int, default=1)
-    parser.add_argument("--time-step-ms", type=float, default=1.0)
+    parser.add_argument("--time-step-ms", type=float, default=1000.0 * TIME_STEP_S)
     parser.add_argument("--page", type=Path, default=Path("docs/physics-hypothesis.md"))
     parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args()

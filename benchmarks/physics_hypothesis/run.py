@@ -11,16 +11,13 @@ from typing import Any
 import numpy as np
 import pyarrow.parquet as pq
 
-from benchmarks.physics_hypothesis.hands import plain_bodies, trajectories
-from fpcad.make.description import describe
-from fpcad.make.description.mjcf import hand_mjcf
 from fpcad.model.geometry import hand_geometry
 from fpcad.pipeline.evaluate import evaluate_candidate
 from fpcad.pipeline.sample import read_candidates
 from fpcad.pipeline.stage import Build
 from fpcad.sample.space import DesignSpace, design_space
 from fpcad.sample.tree import Candidate
-from fpcad.simulate.engine import mujoco
+from fpcad.simulate.candidate import plain_hand, trajectories
 from fpcad.simulate.trials import judge, run_trial, standard_trials
 from fpcad.solve.attempt import Workbench
 from fpcad.store import write_json
@@ -48,9 +45,7 @@ def try_hand(
     design = space.internal(candidate.named)
     geometry = hand_geometry(bench.template, design)
     made, faults = trajectories(bench, design, geometry, evaluation.paths)
-    moving = {pose: trajectory for pose, (trajectory, _) in made.items()}
-    xml = hand_mjcf(describe(bench.spec, geometry, plain_bodies(geometry), moving))
-    hand = mujoco().MjSpec.from_string(xml)
+    hand = plain_hand(bench.spec, geometry, {pose: moving for pose, (moving, _) in made.items()})
     poses = {}
     for pose, (trajectory, margins) in made.items():
         metrics = asdict(evaluation.metrics[pose])

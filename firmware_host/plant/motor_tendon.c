@@ -111,6 +111,18 @@ static real stop_torque(const struct plant *plant, uint8_t joint)
     return -STOP_STIFFNESS * beyond - STOP_DAMPING * plant->joint_rate[joint];
 }
 
+static real tendon_torque(real slack, real stretch, real rate)
+{
+    if (stretch > slack) {
+        stretch -= slack;
+    } else if (stretch < -slack) {
+        stretch += slack;
+    } else if (slack > 0) {
+        return 0;
+    }
+    return TENDON_STIFFNESS * stretch + TENDON_DAMPING * rate;
+}
+
 static void turn_motor(
     struct plant *plant, const struct motor_goals *goals, uint8_t motor, real *tendon)
 {
@@ -120,7 +132,7 @@ static void turn_motor(
         stretch -= plant->gain[motor][k] * plant->joint[base + k];
         rate -= plant->gain[motor][k] * plant->joint_rate[base + k];
     }
-    *tendon = TENDON_STIFFNESS * stretch + TENDON_DAMPING * rate;
+    *tendon = tendon_torque(plant->slack[motor], stretch, rate);
     real torque = servo_torque(plant, goals, motor);
     plant->current_a[motor] = torque / TORQUE_PER_AMPERE;
     real heat = HEATING_C * plant->current_a[motor] * plant->current_a[motor];
@@ -142,6 +154,9 @@ static void turn_joint(struct plant *plant, uint8_t joint, const real *tendon)
     }
     real free_rate = plant->joint_rate[joint] + torque / JOINT_INERTIA * STEP;
     plant->joint_rate[joint] = with_friction(free_rate, JOINT_FRICTION / JOINT_INERTIA * STEP);
+    if (plant->grasped[joint]) {
+        plant->joint_rate[joint] = 0;
+    }
 }
 
 void plant_step(struct plant *plant, const struct motor_goals *goals, uint16_t steps)

@@ -35,6 +35,8 @@ struct plant {
     bool dead[MAX_JOINTS];   /* motors that neither pull nor answer */
     bool stuck[MAX_JOINTS];  /* encoders that stand still */
     bool weak[MAX_JOINTS];   /* motors that hardly overcome their friction */
+    bool grasped[MAX_JOINTS]; /* joints that a person's hand holds still */
+    real slack[MAX_JOINTS];  /* either way, in which a motor's tendons do not pull [rad] */
     int32_t last_read[MAX_JOINTS];
 };
 

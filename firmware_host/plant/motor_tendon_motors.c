@@ -4,6 +4,7 @@
 
 extern const struct hand_setup HAND_SETUP;
 extern const float HAND_START_RAD[MAX_JOINTS];
+extern const float HAND_ZERO_ERROR_RAD[MAX_JOINTS];
 
 static struct plant plant;
 
@@ -14,6 +15,9 @@ void motors_start(void)
         start[i] = HAND_START_RAD[i];
     }
     plant_rest_at(&plant, &HAND_SETUP, start);
+    for (uint8_t i = 0; i < HAND_SETUP.joints; i++) {
+        plant_misplace_zero(&plant, i, HAND_ZERO_ERROR_RAD[i]);
+    }
 }
 
 void motors_exchange(

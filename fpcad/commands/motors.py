@@ -18,7 +18,7 @@ verbs.add_typer(numbering, name="motors")
 
 def _bench(name: str, build: Path, driver: str, port: str | None, calibration: Path | None):
     from fpcad.commands import drive
-    from fpcad.commands.bench import Bench
+    from fpcad.commands.measuring import Measuring
     from fpcad.run.hand_files import read_hand
 
     design = spec_file(name)
@@ -26,7 +26,7 @@ def _bench(name: str, build: Path, driver: str, port: str | None, calibration: P
     hand = read_hand(spec, build / spec.name)
     drive.known_driver(driver)
     kept = calibration or drive.calibration_of(design, hand, driver, port)
-    return Bench(hand, driver, port, kept)
+    return Measuring(hand, driver, port, kept)
 
 
 @verbs.command()
@@ -71,7 +71,7 @@ def calibrate(
 def tension(
     name: Design,
     motor: Annotated[str | None, typer.Option(help="One motor, as thumb_m1; else all.")] = None,
-    driver: DriverName = "feetech",
+    driver: DriverName = "fw",
     port: Port = None,
     build: BuildFolder = Path("build"),
     calibration: CalibrationFile = None,

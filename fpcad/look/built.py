@@ -12,6 +12,7 @@ from fpcad.select.columns import flags
 Row = dict[str, str]
 
 BOM, CHECKS = Path("parts") / "bom.csv", Path("parts") / "checks.csv"
+LOADS = Path("parts") / "loads.csv"
 SEVERITIES = ("error", "warning", "figure")
 FIGURES = ("value", "limit")
 STAMP = ("hand", "spec_sha256")
@@ -50,6 +51,11 @@ def checks(run: Run) -> list[Row]:
         for row in _rows(run, CHECKS)
     ]
     return sorted(found, key=lambda row: rank.get(row.get("severity", ""), len(rank)))
+
+
+def loads(run: Run) -> list[Row]:
+    """What motors, tendons, bearings and bones bear, of parts/loads.csv, the heaviest share first."""
+    return sorted(_rows(run, LOADS), key=lambda row: -float(row["share"]))
 
 
 def _short(number: str) -> str:

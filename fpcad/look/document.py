@@ -30,7 +30,7 @@ from fpcad.units import RAD_PER_DEG
 Array = NDArray[np.float64]
 Told = dict[str, Any]
 
-FORMAT = 2
+FORMAT = 3
 
 OPENING, HANDS, PATHS = "opening", "hands", "paths"
 """Blocks in the order of the page: figures and the chosen hand; every hand in 3D; other paths."""
@@ -49,7 +49,7 @@ def build_document(run: Run, logs: Sequence[RunLog] = ()) -> tuple[Told, dict[st
         JSON values with references into the blocks, and each block in base64, the first one first;
         see :class:`fpcad.look.pack.Packer`.
     """
-    pack, hands, paths = (Packer(name) for name in (OPENING, HANDS, PATHS))
+    pack, hands, paths = Packer(OPENING, plain=True), Packer(HANDS), Packer(PATHS)
     labels = clusters(run.space.standardize(run.designs))
     merit = numbers(run.table, MEAN_SCORE)
     chosen_row = _chosen_row(run)

@@ -1,4 +1,4 @@
-"""Arrays of a page in blocks of bytes: quantized, taken apart into byte planes, deflated."""
+"""Arrays of a page in blocks of bytes: plain, or taken apart into byte planes and deflated."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 MISSING = -32768
 """Quantized NaN."""
 LARGEST = 32767
+ALIGNED = 4
+"""Bytes; arrays of a plain block start at multiples of it, where the page's script can read them."""
 
 
 class Packer:
@@ -20,10 +22,14 @@ class Packer:
     A reference holds `in`, the block's name, `at` and `n` (bytes and items in the block), `type`
     (`f4`, `i2`, `u1`, `i4`), `shape`, for quantized arrays `scale` and `offset`, and `delta` where
     rows hold differences.
+
+    A plain block is larger, and the page's script reads its numbers where they lie: inflating a
+    megabyte and putting planes together takes longer than all else that the page opens with.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, plain: bool = False) -> None:
         self.name = name
+        self._plain = plain
         self._block = bytearray()
 
     def exact(self, values: ArrayLike) -> dict[str, Any]:
@@ -52,13 +58,16 @@ class Packer:
         return {**told, "scale": float(scale), "offset": float(offset), "delta": delta}
 
     def text(self) -> str:
-        """The whole block, deflated, in base64."""
-        return base64.b64encode(zlib.compress(bytes(self._block), 9)).decode("ascii")
+        """The whole block in base64, deflated unless it is plain."""
+        block = bytes(self._block)
+        return base64.b64encode(block if self._plain else zlib.compress(block, 9)).decode("ascii")
 
     def _add(self, array: NDArray[Any], kind: str) -> dict[str, Any]:
+        self._block += bytes(-len(self._block) % ALIGNED)
         at, size = len(self._block), array.dtype.itemsize
         flat = np.ascontiguousarray(array).ravel()
+        planes = flat.view(np.uint8).reshape(-1, size)
         # Bytes of the same weight side by side: neighbours are alike, so they deflate better.
-        self._block += flat.view(np.uint8).reshape(-1, size).T.tobytes()
+        self._block += (planes if self._plain else planes.T).tobytes()
         where = {"in": self.name, "at": at, "n": int(flat.size)}
         return {**where, "type": kind, "shape": list(array.shape)}

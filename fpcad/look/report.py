@@ -18,7 +18,8 @@ from fpcad.look.words import summarize
 from fpcad.store import write_whole
 
 FILE = "report.html"
-SCRIPTS = ("report.js", "report.3d.js")
+SCRIPTS = ("report.first.js", "report.3d.js", "report.js")
+"""In the order of the page: the first stands before the data, the last runs the second."""
 MAX_BYTES = 15_000_000
 """What a page of 10,000 candidates stays under."""
 

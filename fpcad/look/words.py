@@ -8,7 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from fpcad.look.built import Row, check_warnings, checks, parts_list, refusals, torque_warnings
+from fpcad.look.built import (
+    Row,
+    check_warnings,
+    checks,
+    loads,
+    parts_list,
+    refusals,
+    torque_warnings,
+)
 from fpcad.look.columns import Column
 from fpcad.look.curves import outcome_counts
 from fpcad.look.logs import RunLog
@@ -51,6 +59,8 @@ class Summary:
     """Rows of the parts list."""
     checks: list[Row]
     """What the gates found on the chosen hand."""
+    loads: list[Row]
+    """What its parts bear along the trajectories."""
     logs: list[tuple[str, tuple[tuple[str, str], ...]]]
     """Runs on motors with their facts."""
     warnings: list[str]
@@ -72,6 +82,7 @@ def summarize(
         refusals=refusals(run),
         parts=parts_list(run),
         checks=checks(run),
+        loads=loads(run),
         logs=[(log.name, log.facts) for log in logs],
         warnings=warnings,
     )

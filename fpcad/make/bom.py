@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
-from fpcad.make.documents.stamp import Stamp
 from fpcad.make.parts.assembly import Assembly, BoughtItem
 from fpcad.make.parts.catalogue import TABLES, Tendon, lookup, table
 from fpcad.make.parts.mcp_dimensions import TENDON
@@ -83,19 +82,19 @@ def bill_of_materials(
     if not any(item.kind == MOTORS for item in assembly.bought):
         row = motor(spec.motors.type)
         bought.append(
-            _bought(MOTORS, 3 * fingers, row.type, f"{row.mass_g:g}", row.source, "three a finger")
+            _bought("motor", 3 * fingers, row.type, f"{row.mass_g:g}", row.source, "three a finger")
         )
     if tendons_mm:
         bought.append(_tendon(tendons_mm))
     return [*printed, *bought, *_electrical(spec, 3 * fingers)]
 
 
-def bom_csv(rows: Sequence[BomRow], stamp: Stamp) -> str:
-    """The bill as CSV with a header line; the last columns tell what hand and spec it is of."""
+def bom_csv(rows: Sequence[BomRow]) -> str:
+    """The bill as CSV with a header line."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow([*(field.name for field in fields(BomRow)), "hand", "spec_sha256"])
-    writer.writerows([*astuple(row), stamp.hand, stamp.spec_sha256] for row in rows)
+    writer.writerow([field.name for field in fields(BomRow)])
+    writer.writerows(astuple(row) for row in rows)
     return stream.getvalue()
 
 

@@ -20,6 +20,10 @@ from fpcad.make.gates.finding import Severity
 from fpcad.make.gates.table import FILE as CHECKS
 from fpcad.make.gates.table import findings_csv
 from fpcad.make.inertia import link_inertia
+from fpcad.make.loads.check import load_findings
+from fpcad.make.loads.hand import hand_loads
+from fpcad.make.loads.table import FILE as LOADS
+from fpcad.make.loads.table import loads_csv
 from fpcad.make.mesh import in_metres, stl_bytes
 from fpcad.make.parts.assembly import Assembly, Progress, make_assembly
 from fpcad.make.parts.tendon_lengths import pieces_to_cut
@@ -28,7 +32,6 @@ from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.dump import spec_hash
 from fpcad.spec.schema import Spec
-from fpcad.store import write_whole
 
 ASSEMBLY_STEP = "assembly.step"
 log = logging.getLogger(__name__)
@@ -54,20 +57,24 @@ def make_hand(
     stamp = Stamp(spec.name, candidate, spec_hash(spec))
     assembly = make_assembly(spec, geometry, progress)
     findings = pass_gates(spec, assembly, geometry, trajectories, progress)
+    progress("loads")
+    loads = hand_loads(spec, assembly, geometry, trajectories)
+    findings += load_findings(loads)
     for finding in findings:
         if finding.severity is Severity.WARNING:
             log.info("%s", finding)
     progress("files")
     parts, folder = assembly.parts, out / "parts"
     files = write_parts(spec, assembly, geometry, folder, stamp)
-    files.append(write_whole(folder / CHECKS, findings_csv(findings)))
+    files.append(stamp.write(folder / CHECKS, findings_csv(findings)))
+    files.append(stamp.write(folder / LOADS, loads_csv(loads)))
     files += [
-        write_whole(out / "hand" / VISUAL_FOLDER / f"{p.name}.stl", stl_bytes(in_metres(p.on_link)))
+        stamp.write(out / "hand" / VISUAL_FOLDER / f"{p.name}.stl", stl_bytes(in_metres(p.on_link)))
         for p in parts
     ]
     robot = describe(spec, geometry, link_bodies(spec, assembly), trajectories)
-    files += write_description(robot, trajectories, out / "hand")
-    files.append(write_whole(out / "hand" / "transmission.yaml", transmission_yaml(spec, geometry)))
+    files += write_description(robot, trajectories, out / "hand", stamp)
+    files.append(stamp.write(out / "hand" / "transmission.yaml", transmission_yaml(spec, geometry)))
     return files
 
 
@@ -77,19 +84,19 @@ def write_parts(
     """Write what is printed and bought: meshes, solids, print files, list and bill."""
     files = []
     for part in assembly.parts:
-        mesh = stamp.on_stl(stl_bytes(part.mesh))
-        files.append(write_whole(folder / part.material / f"{part.name}.stl", mesh))
-        solid = part_step(part.name, part.solid, stamp)
-        files.append(write_whole(folder / "step" / f"{part.name}.step", solid))
-    whole = assembly_step(assembly, geometry, stamp)
-    files.append(write_whole(folder / "step" / ASSEMBLY_STEP, whole))
+        mesh = stl_bytes(part.mesh)
+        files.append(stamp.write(folder / part.material / f"{part.name}.stl", mesh))
+        solid = part_step(part.name, part.solid)
+        files.append(stamp.write(folder / "step" / f"{part.name}.step", solid))
+    whole = assembly_step(assembly, geometry, stamp.name)
+    files.append(stamp.write(folder / "step" / ASSEMBLY_STEP, whole))
     files += write_print_files(assembly.parts, spec.print, folder, stamp)
     files += write_print_files(extra_parts(spec), spec.print, folder, stamp)
     files += write_inventory(assembly, folder, stamp)
     files += write_guide(spec, assembly, geometry, folder, stamp)
     tendons = pieces_to_cut(spec, geometry)
     bill = bill_of_materials(spec, assembly, len(geometry.fingers), {}, tendons)
-    return [*files, write_whole(folder / "bom.csv", bom_csv(bill, stamp))]
+    return [*files, stamp.write(folder / "bom.csv", bom_csv(bill))]
 
 
 def link_bodies(spec: Spec, assembly: Assembly) -> dict[str, LinkBody]:

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from fpcad.errors import StoreError
+from fpcad.make.documents.stamp import Stamp
 from fpcad.make.grip import ContactLink
 from fpcad.make.trajectory import ToolMotion, Trajectory
-from fpcad.store import write_whole
 
 
-def write_trajectory(trajectory: Trajectory, file: Path) -> None:
+def write_trajectory(trajectory: Trajectory, file: Path, stamp: Stamp) -> None:
     """Write a trajectory; equal trajectories give equal bytes, and `file` is never half written."""
     text = json.dumps(_document(trajectory), allow_nan=False, separators=(",", ":"))
-    write_whole(file, text + "\n")
+    stamp.write(file, text + "\n")
 
 
 def read_trajectory(file: Path) -> Trajectory:

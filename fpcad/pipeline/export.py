@@ -8,22 +8,19 @@ from functools import partial
 import numpy as np
 
 from fpcad.errors import MakeError
+from fpcad.make.documents.stamp import Stamp
+from fpcad.make.gripping import gripping_trajectory
 from fpcad.make.hand import make_hand
-from fpcad.make.preload.tighten import tightened
 from fpcad.make.survive import survival, told
-from fpcad.make.trajectory import Trajectory, build_trajectory
 from fpcad.make.trajectory_file import write_trajectory
 from fpcad.model.geometry import hand_geometry
-from fpcad.model.transmission import hand_transmission, single_axis_speed_limits
 from fpcad.pipeline.evaluate import FILE as METRICS_FILE
 from fpcad.pipeline.paths import drop_spare_paths, read_paths
 from fpcad.pipeline.select import METRICS, SELECTED, refuse
 from fpcad.pipeline.stage import Build, Counts, Stage
 from fpcad.sample.space import design_space
-from fpcad.spec.catalogue import motor
-from fpcad.store import read_json, read_table, write_json
-from fpcad.wield.evaluate import contact_projector
-from fpcad.wield.path import WieldingPath
+from fpcad.spec.dump import spec_hash
+from fpcad.store import json_text, read_json, read_table
 
 GRIP, SURVIVAL = "grip.json", "survival.json"
 PART_STEPS = 24
@@ -62,36 +59,29 @@ def _export_chosen(build: Build) -> int:
     named = np.array([selected["design"][name] for name in space.names])
     design = space.internal(named)
     geometry = hand_geometry(build.bench.template, design)
+    stamp = Stamp(build.spec.name, int(selected["id"]), spec_hash(build.spec))
     trajectories, margins, paths = {}, {}, read_paths(build, int(selected["id"]))
     with build.reporter.stage("trajectories", len(build.spec.poses)) as bar:
         for path in paths.values():
-            trajectory, margins[path.pose] = tightened(
-                make_trajectory(build, design, path),
-                *(build.spec, path.pose, geometry, path.hand_in_tool),
+            trajectory, margins[path.pose] = gripping_trajectory(
+                build.bench, design, geometry, path
             )
             trajectories[path.pose] = trajectory
-            write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json")
+            write_trajectory(trajectory, build.folder / "trajectories" / f"{path.pose}.json", stamp)
             bar.advance(1, f"{path.pose}: {trajectory.duration_s:.1f} s")
-    write_json(build.folder / GRIP, {pose: asdict(told) for pose, told in margins.items()})
+    stamp.write(
+        build.folder / GRIP, json_text({pose: asdict(told) for pose, told in margins.items()})
+    )
     with build.reporter.stage("parts", PART_STEPS) as bar:
         progress = partial(bar.advance, 1)
         made = build.spec, geometry, build.folder
         files = make_hand(*made, progress, trajectories, int(selected["id"]))
     with build.reporter.stage("errors of print and joints", None):
         figures = survival(build.bench, design, paths.values())
-    write_json(build.folder / SURVIVAL, figures)
+    stamp.write(build.folder / SURVIVAL, json_text(figures))
     for line in told(figures):
         build.reporter.note(line)
     return len(files) + len(build.spec.poses) + 2
-
-
-def make_trajectory(build: Build, design: np.ndarray, path: WieldingPath) -> Trajectory:
-    """The trajectory along one path of a hand with design (n_d,) [mm, rad]."""
-    spec, geometry = build.spec, hand_geometry(build.bench.template, design)
-    A = hand_transmission(spec.motors.transmission, len(geometry.fingers))
-    speed = single_axis_speed_limits(A, motor(spec.motors.type).no_load_speed_rad_s)
-    projector = contact_projector(build.bench, design, path)
-    return build_trajectory(path, spec, geometry, projector, speed)
 
 
 EXPORT = Stage(

@@ -14,6 +14,7 @@ from fpcad.pipeline.sample import SAMPLE
 from fpcad.pipeline.select import SELECT
 from fpcad.pipeline.solve import SOLVE
 from fpcad.pipeline.stage import Build, Stage
+from fpcad.simulate.engine import mujoco
 from fpcad.spec.dump import dump_spec
 from fpcad.store import exclusive, write_whole
 
@@ -27,6 +28,8 @@ def run_stages(build: Build, last: str, force: bool = False) -> dict[str, Any]:
     killed goes on from its finished shards. `force` makes the last stage again. No other process may
     be making the same folder.
     """
+    if build.spec.selection.simulate:
+        mujoco()  # whether it is there is told now, not after hours of sampling
     with exclusive(build.folder):
         return _run_stages(build, last, force)
 

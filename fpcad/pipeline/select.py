@@ -1,4 +1,4 @@
-"""Stage select: scores, Pareto front, the chosen hand and its paths."""
+"""Stage select: scores, Pareto front, trials in physics, the chosen hand and its paths."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pyarrow as pa
 
 from fpcad.pipeline.evaluate import FILE as METRICS_FILE
 from fpcad.pipeline.evaluate import evaluate_candidate
+from fpcad.pipeline.finalists import share_columns, with_trials
 from fpcad.pipeline.makeable import refuse_early
 from fpcad.pipeline.paths import FILE as PATHS
 from fpcad.pipeline.paths import read_paths, write_paths
@@ -56,7 +57,9 @@ def _settle(build: Build, metrics: pa.Table) -> Counts:
     poses, selection = list(build.spec.poses), build.spec.selection
     more = [Metric(*told) for told in scored_by(metrics.column_names, poses)]
     ranked = rank_table(metrics, poses, selection, more)
-    choice = choose(ranked, build.spec.selection.rule)
+    if selection.simulate:
+        ranked = with_trials(build, ranked)
+    choice = choose(ranked, selection.rule, share_columns(build))
     write_table(build.folder / METRICS, ranked)
     write_paths(build, list({choice.id, *_kept(build, ranked)}), partial(_evaluate_again, build))
     write_json(build.folder / SELECTED, describe_choice(build, choice))
@@ -107,4 +110,5 @@ SELECT = Stage(
     ("wield", "select", "make/parts", "make/gates"),
     (METRICS, PATHS, SELECTED),
     select,
+    physics=lambda spec: spec.selection.simulate > 0,
 )

@@ -20,6 +20,9 @@ from fpcad.workers import Workers, available_cores
 
 PACKAGE = Path(__file__).parent.parent
 
+PHYSICS = ("motion", "grip"), ("make", "simulate")
+"""Sections and layers that trials in physics depend on."""
+
 Counts = dict[str, int | float | str]
 """What a stage tells of itself in the manifest."""
 
@@ -109,6 +112,7 @@ class Stage:
         run: makes the outputs and tells counts.
         edition: of the columns of its files; another one makes it again.
         plugins: whether its results depend on other packages' metrics.
+        physics: whether a spec has it try hands in physics, which more of spec and code decide.
     """
 
     name: str
@@ -118,13 +122,16 @@ class Stage:
     run: Callable[[Build], Counts]
     edition: int = 1
     plugins: bool = False
+    physics: Callable[[Spec], bool] = lambda _: False
 
     def key(self, spec: Spec, before: str) -> str:
         """Hash of everything that the stage's results depend on: stages before, spec and code."""
         digest = hashlib.sha256()
-        for text in (self.name, str(self.edition), before, spec_hash(spec, *self.sections)):
+        more = PHYSICS if self.physics(spec) else ((), ())
+        sections, layers = (*self.sections, *more[0]), (*self.layers, *more[1])
+        for text in (self.name, str(self.edition), before, spec_hash(spec, *sections)):
             digest.update(text.encode() + b"\0")
-        for layer in self.layers:
+        for layer in layers:
             folder = PACKAGE / layer
             for source in sorted([*folder.rglob("*.py"), *folder.glob("page/report.*")]):
                 digest.update(source.read_bytes())

@@ -79,7 +79,7 @@ class FirmwareDriver:
         return KnotStream(self._link, buffer_knots, names, wire, watch).play()
 
     def _sample(self, now: Telemetry) -> Sample:
-        return to_sample(now, self._link.resends, 0, self._health)
+        return to_sample(now, self._link.record.resends, 0, self._health)
 
     def _not_ready(self, now: Telemetry) -> NotReady:
         state, cause = State(now.state), Cause(now.cause)

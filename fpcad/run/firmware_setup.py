@@ -111,8 +111,13 @@ def setup_text(setup: FirmwareSetup, start_rad: NDArray[np.float64]) -> str:
     return "\n".join([*lines, f"start_rad {' '.join(repr(float(x)) for x in start_rad)}", ""])
 
 
-def setup_source(setup: FirmwareSetup, start_rad: Sequence[float]) -> str:
-    """A C file that defines `HAND_SETUP` and, for simulated motors, `HAND_START_RAD`."""
+def setup_source(
+    setup: FirmwareSetup, start_rad: Sequence[float], zero_error_rad: Sequence[float] = ()
+) -> str:
+    """A C file that defines `HAND_SETUP` and, for simulated motors, where they are.
+
+    `start_rad` (n,): where joints rest; `zero_error_rad` (n,): how far motors' zeros are off.
+    """
     numbers = setup.numbers()
     group = setup.transmission.group
     for name in ("gain", "inverse"):
@@ -125,13 +130,20 @@ def setup_source(setup: FirmwareSetup, start_rad: Sequence[float]) -> str:
     for part, names in _INNER.items():
         body = "".join(f"        .{_within(part, n)} = {_c(numbers[n])},\n" for n in names)
         lines.append(f"    .{part} = {{\n{body}    }},")
-    start = ", ".join(f"{float(x)!r}f" for x in start_rad)
     return (
         "/* Written by fpcad.run.firmware_setup for one hand. */\n"
         '#include "hand_setup.h"\n\n'
-        "const struct hand_setup HAND_SETUP = {\n" + "\n".join(lines) + "\n};\n\n"
-        f"const float HAND_START_RAD[MAX_JOINTS] = {{{start}}};\n"
+        "const struct hand_setup HAND_SETUP = {\n"
+        + "\n".join(lines)
+        + "\n};\n\n"
+        + _floats("HAND_START_RAD", start_rad)
+        + _floats("HAND_ZERO_ERROR_RAD", zero_error_rad)
     )
+
+
+def _floats(name: str, values: Sequence[float]) -> str:
+    inner = ", ".join(f"{float(x)!r}f" for x in values) or "0"
+    return f"const float {name}[MAX_JOINTS] = {{{inner}}};\n"
 
 
 _INNER = {

@@ -11,7 +11,8 @@ from typing import Any
 from fpcad.run.codec import KINDS, MalformedMessage, decode, encode
 from fpcad.run.errors import ControllerReset, LinkLost
 from fpcad.run.framing import PROTOCOL_VERSION, Frame, FrameReader, encode_frame
-from fpcad.run.messages import Ack, Nak, NoSession, Ping, Pong, Refused
+from fpcad.run.line_record import LineRecord
+from fpcad.run.messages import Ack, Nak, NoSession, Ping, Pong, Refused, Telemetry
 from fpcad.run.port import Transport
 
 Clock = Callable[[], float]
@@ -69,11 +70,11 @@ class Link:
     transport: Transport
     session: int
     clock: Clock = time.monotonic
-    resends: int = 0
     foreign_version: int | None = None
     """Protocol version of a valid frame that is not ours, once one has come."""
     watch_silence: bool = False
     reader: FrameReader = field(default_factory=FrameReader)
+    record: LineRecord = field(default_factory=LineRecord)
 
     def __post_init__(self) -> None:
         self.heard_at_s = self.clock()
@@ -117,11 +118,15 @@ class Link:
         Raises :class:`LinkLost` after 8 repeats in vain or 0.45 s of silence, and
         :class:`ControllerReset` when the controller no longer knows the session.
         """
+        self.record.look(self.clock())
         frames = self.reader.feed(self.transport.read())
+        self.record.unread_here = self.reader.bad_frames
         messages = [msg for frame in frames if (msg := self._accept(frame)) is not None]
         # Silence is judged after reading, so that a host that stalled itself blames nobody.
         if self.watch_silence and self.clock() - self.heard_at_s > SILENCE_S:
-            raise LinkLost(f"nothing heard from the controller for {SILENCE_S * 1e3:.0f} ms")
+            raise LinkLost(
+                f"nothing heard from the controller for {SILENCE_S * 1e3:.0f} ms ({self.record})"
+            )
         self._repeat_if_due()
         self._ping_if_due()
         return messages
@@ -154,6 +159,8 @@ class Link:
                 self._repeat()
         elif isinstance(msg, Refused):
             self._release((msg.seq + 1) & 0xFFFF)
+        elif isinstance(msg, Telemetry):
+            self.record.hear_unread(msg.bad_frames)
         elif isinstance(msg, Pong):
             self.round_trip.add(max(self.clock() - msg.host_us / 1e6, 0.0))
         elif isinstance(msg, NoSession) and self.watch_silence:
@@ -175,13 +182,15 @@ class Link:
             return
         self._failures += 1
         if self._failures > MAX_FAILURES:
-            raise LinkLost(f"the controller acknowledged nothing after {MAX_FAILURES} repeats")
+            raise LinkLost(
+                f"the controller acknowledged nothing after {MAX_FAILURES} repeats ({self.record})"
+            )
         self._repeat()
 
     def _repeat(self) -> None:
         for sent in self._window:
             sent.repeated = True
-            self.resends += 1
+            self.record.resent(self.clock())
             self._write(sent.data)
         self._waiting_since_s = self.clock()
 

@@ -68,10 +68,10 @@ def from_present(present: Sample, knots: Knots, limits: JointLimits, far: bool) 
             f"{limits.names[worst]} is {np.degrees(distance[worst]):.1f} degrees from where the "
             "trajectory starts (2 are allowed); bring the hand there, or ask for a move to start"
         )
-    return approach(_resting_within(present, limits), knots, limits, APPROACH_SHARE)
+    return approach(resting_within(present, limits), knots, limits, APPROACH_SHARE)
 
 
-def _resting_within(present: Sample, limits: JointLimits) -> Array:
+def resting_within(present: Sample, limits: JointLimits) -> Array:
     """Where the path may begin: what the encoders say, or the limit that it lies just beyond."""
     nearest = np.minimum(np.maximum(present.command_rad, limits.lower_rad), limits.upper_rad)
     beyond = np.abs(present.command_rad - nearest)

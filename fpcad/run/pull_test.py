@@ -21,7 +21,7 @@ SHARES = (0.1, 0.3)
 _BEYOND_RAD = 1.0
 """How far a goal lies beyond what blocks: more than the motor can stretch its tendon."""
 _APPROACH_RAD_S = 1.0
-_NOD_RAD = 0.5
+NOD_RAD = 0.5
 _SETTLE_S = 0.4
 _PERIOD_S = 0.01
 _SAMPLES = 10
@@ -34,6 +34,12 @@ class Pull:
 
     spool_rad: Array  # (n,)
     torque_nm: Array  # (n,) at the spools, without sign
+
+
+def leading(matrix: Array, joint: int) -> list[int]:
+    """Motors (rows of an (n, n) transmission) that pull a joint at least as strongly as any other."""
+    rows = np.abs(matrix)
+    return [int(m) for m in np.flatnonzero(rows[:, joint] >= rows.max(axis=1) - 1e-9)]
 
 
 @dataclass(frozen=True)
@@ -68,14 +74,13 @@ class PullTest:
         """
         found = np.full(len(self._bus.names), np.nan)
         for joint in range(len(self._map.joints)):
-            moving = np.flatnonzero(np.abs(self._map.transmission.matrix[:, joint]) > 1e-9)
-            mine = [int(m) for m in moving if np.isnan(found[m])]
+            mine = [m for m in leading(self._map.transmission.matrix, joint) if np.isnan(found[m])]
             if not mine:
                 continue
             weak, strong = self._push(joint)
             turned = np.abs(strong.spool_rad - weak.spool_rad)
             torque = strong.torque_nm - weak.torque_nm
-            for m in self._leading(joint, mine):
+            for m in mine:
                 if turned[m] > _LEAST_MOVE_RAD and torque[m] > 0:
                     found[m] = torque[m] / turned[m]
         return found
@@ -101,15 +106,9 @@ class PullTest:
         """Turn one joint a little way up and back, for eyes that watch."""
         rest = self._map.to_joints(self._bus.read_state().position_rad)
         bent = rest.copy()
-        bent[joint] = min(rest[joint] + _NOD_RAD, self._limits.upper_rad[joint])
+        bent[joint] = min(rest[joint] + NOD_RAD, self._limits.upper_rad[joint])
         for goal in (bent, rest):
             self._go(self._map.to_bus(goal))
-
-    def _leading(self, joint: int, motors: list[int]) -> list[int]:
-        """Of motors that turn with a joint, those that pull it: the strongest coupled ones."""
-        column = np.abs(self._map.transmission.matrix[:, joint])
-        rows = np.abs(self._map.transmission.matrix)
-        return [m for m in motors if column[m] >= rows[m].max() - 1e-9]
 
     def _push(self, joint: int) -> tuple[Pull, Pull]:
         """Push a joint on its upper end with both torques, then bring it back."""

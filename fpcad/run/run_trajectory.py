@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -26,9 +26,10 @@ from fpcad.run.port import Transport, open_port
 from fpcad.run.quintic import Knots, preload_at
 from fpcad.run.report import Progress, RunReport, TrackingError
 from fpcad.run.run_log import RunLog
-from fpcad.run.servo_driver import ServoDriver, ServoGuards
+from fpcad.run.servo_driver import ServoDriver
+from fpcad.run.servo_guard import ServoGuards
 from fpcad.run.session import HANDSHAKE_S
-from fpcad.run.sim.spawn import firmware_process, simulated_controller
+from fpcad.run.sim.spawn import Mishap, firmware_process, simulated_controller
 
 Array = NDArray[np.float64]
 
@@ -213,15 +214,20 @@ def _nearest_to_straight(limits: JointLimits) -> Array:
 
 
 @contextmanager
-def controller_line(port: str, limits: JointLimits, posture: Array) -> Iterator[Transport]:
-    """The line to a real controller, or to a simulated one whose joints rest at `posture`."""
+def controller_line(
+    port: str, limits: JointLimits, posture: Array, mishaps: Sequence[Mishap] = ()
+) -> Iterator[Transport]:
+    """The line to a real controller, or to a simulated one whose joints rest at `posture`.
+
+    `mishaps` happen to a simulated one.
+    """
     start = SIMULATED_PORTS.get(port.partition(":")[0])
     if start is None:
         with closing(open_port(port)) as transport:
             yield transport
         return
     rate = clock_rate(port)
-    with start(limits, posture, clock_rate=rate) as device:  # noqa: SIM117
+    with start(limits, posture, clock_rate=rate, mishaps=mishaps) as device:  # noqa: SIM117
         with closing(open_port(device.port)) as transport:
             yield transport
 

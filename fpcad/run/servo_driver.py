@@ -9,7 +9,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import NoReturn
 
 import numpy as np
@@ -23,7 +22,6 @@ from fpcad.run.errors import (
     HeldByUser,
     LinkLost,
     RunError,
-    ServoFault,
     StoppedByUser,
 )
 from fpcad.run.knots import WireKnots, to_wire
@@ -32,6 +30,7 @@ from fpcad.run.link import Clock
 from fpcad.run.motor_limits import motor_limits_of
 from fpcad.run.motor_map import MotorMap
 from fpcad.run.quintic import Knots
+from fpcad.run.servo_guard import ServoGuard, ServoGuards, cause_of
 from fpcad.run.sim.follower import PathFollower
 
 Array = NDArray[np.float64]
@@ -40,23 +39,11 @@ PERIOD_S = 0.01
 _LONGEST_STEP_S = 0.03
 """A host that was stalled goes on from where it was: path time slips, goals never jump."""
 WATCHDOG_S = 0.3
-_TRACKING_LIMIT_RAD = 0.15
 ENCODER_END = (
     "its range crosses the end of its encoder; take the spool off, turn the motor half a turn, put the "
     "spool on again, and calibrate"
 )
-_STRIKES = 2
-"""Cycles in a row that make a fault of what may be noise."""
 _BRAKING_CYCLES = 100
-
-
-@dataclass(frozen=True)
-class ServoGuards:
-    """What stops a run, beside a servo's own complaints."""
-
-    current_ma: float
-    temperature_c: float = 70.0
-    tracking_rad: float = _TRACKING_LIMIT_RAD
 
 
 class ServoDriver:
@@ -71,12 +58,12 @@ class ServoDriver:
         clock: Clock = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        self._bus, self._map, self._limits, self._guards = bus, motors, limits, guards
+        self._bus, self._map, self._limits = bus, motors, limits
+        self._guard = ServoGuard(guards, bus.names)
         self._clock, self._sleep = clock, sleep
         first = bus.identify()[0]
         self.identity = f"{len(bus.names)} {first.model}, firmware {first.firmware}"
         self._began_s = clock()
-        self._strikes = 0
         self.slipped_s = 0.0
         """Time that the path lost because the host came late."""
 
@@ -113,6 +100,8 @@ class ServoDriver:
         wire = to_wire(knots)
         follower = self._loaded(wire)
         cycle = _Cycle(self._clock, self._sleep)
+        sent = len(wire.messages)
+        state = self._bus.read_state()
         try:
             while follower.rate > 0:
                 if watch.stops() > 0:
@@ -120,19 +109,22 @@ class ServoDriver:
                 if watch.stops() > 1:
                     self._let_go(follower, wire)
                 state = self._step(follower, cycle)
-                watch.on_sample(self._sample(state, follower, "RUNNING", len(wire.messages)))
-                self._guard(state, follower)
-        except (HeldByUser, StoppedByUser):
-            raise
+                words = ("HOLD", "HOST") if follower.stopping else ("RUNNING", "NONE")
+                watch.on_sample(self._sample(state, follower, *words, sent))
+                self._guard.check(state, follower, self._map)
+            if follower.stopping:
+                self._held(follower, wire)
         except BaseException as error:
-            self._brake(follower, cycle, error)
+            if not isinstance(error, HeldByUser | StoppedByUser):
+                self._brake(follower, cycle, error)
+            if isinstance(error, RunError):  # the table's last row tells how it ended
+                words = _state_after(error), cause_of(error)
+                watch.on_sample(self._sample(state, follower, *words, sent))
             raise
         self.slipped_s = cycle.slipped_s
-        if follower.stopping:
-            self._held(follower, wire)
         state = self._bus.read_state()
-        watch.on_sample(self._sample(state, follower, "READY", len(wire.messages)))
-        return Played(len(wire.messages), 0, state.bad_frames, wire.error_rad, "READY")
+        watch.on_sample(self._sample(state, follower, "READY", "NONE", sent))
+        return Played(sent, 0, state.bad_frames, wire.error_rad, "READY")
 
     def _loaded(self, wire: WireKnots) -> PathFollower:
         """A follower with all knots, each checked as the firmware would."""
@@ -155,28 +147,6 @@ class ServoDriver:
         follower.step(cycle.wait())
         self._bus.write_goals(self._map.to_bus(follower.command + follower.preload))
         return self._bus.read_state()
-
-    def _guard(self, state: BusState, follower: PathFollower) -> None:
-        complaint = self._complaint(state, follower)
-        self._strikes = self._strikes + 1 if complaint else 0
-        if complaint and self._strikes >= _STRIKES:
-            raise ServoFault(complaint)
-
-    def _complaint(self, state: BusState, follower: PathFollower) -> str | None:
-        joints, motors = self._map.joints, self._bus.names
-        error = follower.error(self._map.to_joints(state.position_rad))
-        for names, values, limit, what in (
-            (joints, error, self._guards.tracking_rad, "does not follow, {:.2f} rad behind"),
-            (motors, state.current_ma, self._guards.current_ma, "draws {:.0f} mA"),
-            (motors, state.temperature_c, self._guards.temperature_c, "is at {:.0f} degrees C"),
-        ):
-            worst = int(np.argmax(values))
-            if values[worst] > limit:
-                place = f"at {follower.path_us / 1e6:.2f} s of the path"
-                return (
-                    f"{names[worst]} {what.format(values[worst])} {place}; find out what blocks it"
-                )
-        return None
 
     def _brake(self, follower: PathFollower, cycle: _Cycle, error: BaseException) -> None:
         """Bring the joints that still listen to rest along the path, without asking anything."""
@@ -201,14 +171,19 @@ class ServoDriver:
         )
 
     def _sample(
-        self, state: BusState, follower: PathFollower | None, word: str, sent: int = 0
+        self,
+        state: BusState,
+        follower: PathFollower | None,
+        word: str,
+        cause: str = "NONE",
+        sent: int = 0,
     ) -> Sample:
         position = self._map.to_joints(state.position_rad)
         return Sample(
             self._clock() - self._began_s,
             0.0 if follower is None else follower.path_us / 1e6,
             word,
-            "NONE",
+            cause,
             position,
             position if follower is None else follower.command,
             0 if follower is None else follower.queued,
@@ -242,6 +217,13 @@ class _Cycle:
         step = min(passed, _LONGEST_STEP_S)
         self.slipped_s += passed - step
         return step
+
+
+def _state_after(error: BaseException) -> str:
+    """The state that a controller would be in."""
+    if isinstance(error, StoppedByUser):
+        return "ESTOP"
+    return "HOLD" if isinstance(error, HeldByUser) else "FAULT"
 
 
 def _place(follower: PathFollower, wire: WireKnots) -> str:

@@ -81,8 +81,8 @@ class KnotStream:
         assert self._last is not None
         return Played(
             self._sent,
-            self._link.resends,
-            self._link.reader.bad_frames + self._last.bad_frames,
+            self._link.record.resends,
+            self._link.record.unread,
             self._wire.error_rad,
             State(self._last.state).name,
         )
@@ -160,7 +160,7 @@ class KnotStream:
         if self._started and msg.state == State.RUNNING:
             self._note_place(msg.path_us)
         self._clock.add(self._link.clock(), msg.device_us)
-        self._watch.on_sample(to_sample(msg, self._link.resends, self._sent, self._health))
+        self._watch.on_sample(to_sample(msg, self._link.record.resends, self._sent, self._health))
 
     def _note_place(self, path_us: int) -> None:
         """The controller forgets knots that the path has passed, but for the present segment's.
@@ -177,12 +177,19 @@ class KnotStream:
         if state == State.FAULT:
             raise ControllerFault(f"the controller stopped {where}: {self._fault(cause)}")
         if state == State.HOLD:
-            raise ControllerHeld(
-                f"the controller holds {where} ({Cause(cause).name.lower()}); "
-                "the run is not resumed"
-            )
+            raise self._held(where, Cause(cause))
         if state == State.ESTOP:
             raise StoppedByUser(f"emergency stop {where}: torque is off, the hand lets go")
+
+    def _held(self, where: str, cause: Cause) -> LinkLost | ControllerHeld:
+        """A controller that a bad line starved is a lost link, not a host that came too late."""
+        record = self._link.record
+        said = f"the controller holds {where} ({cause.name.lower()}); the run is not resumed"
+        if not record.is_to_blame(cause, self._link.clock()):
+            return ControllerHeld(said)
+        lost = LinkLost(f"the line lost too much ({record}): {said}")
+        lost.leaving(ControllerHeld.hand)
+        return lost
 
     def _fault(self, cause: int) -> str:
         if cause != Cause.TRACKING or self._last is None:

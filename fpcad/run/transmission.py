@@ -15,6 +15,7 @@ from fpcad.run.limits import JointLimits
 
 Array = NDArray[np.float64]
 
+_MATRIX = re.compile(rb"^matrix:", re.MULTILINE)
 _MOTOR_TYPE = re.compile(rb"^motor_type: *([A-Za-z0-9.-]+) *$", re.MULTILINE)
 LARGEST_GROUP = 4
 """Joints that may share motors, as the firmware is compiled."""
@@ -60,7 +61,7 @@ def motor_type_of(text: bytes) -> str:
 
 def transmission_of(limits: JointLimits) -> Transmission:
     """The transmission that the limits' configuration holds; without one, one to one."""
-    if not limits.configuration.startswith(b"#"):
+    if _MATRIX.search(limits.configuration) is None:
         return direct(len(limits.names))
     return read_transmission(limits.configuration, limits.names)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 MERIT_DECIMALS = 9  # means of equal scores summed in another order differ in their last bits
+SHARE_DECIMALS = 2  # a hundredth of the planned range more or less says nothing
 
 
 @dataclass(frozen=True)
@@ -72,12 +73,26 @@ RULES: dict[str, Rule] = {
 }
 
 
-def choose(table: pa.Table, rule: str) -> Choice:
+def finalists(table: pa.Table, rule: str, count: int) -> list[int]:
+    """Ids of the best hands that can be made, at most `count`, the best first."""
+    criterion = RULES[rule](table)
+    rows = np.flatnonzero(criterion.eligible & flags(table, "makeable"))
+    ids = table["id"].to_numpy()
+    order = np.lexsort((ids[rows], -np.round(criterion.merit[rows], MERIT_DECIMALS)))
+    return ids[rows[order[:count]]].tolist()
+
+
+def choose(table: pa.Table, rule: str, shares: Sequence[str] = ()) -> Choice:
     """The best hand that can be made; of equal ones the one with the lowest id.
+
+    Hands that were tried in physics come before all others. Of these the one wins whose worst trial
+    went best, then the one that did best in the mean, then the one that the rule prefers.
 
     Args:
         table: n rows as :func:`fpcad.select.ranking.rank_table` gives them.
         rule: a key of `RULES`.
+        shares: columns that tell, for each trial in physics, the share of the planned range that
+            was reached; empty where a hand was not tried.
     """
     makeable = flags(table, "makeable")
     if not makeable.any():
@@ -88,11 +103,20 @@ def choose(table: pa.Table, rule: str) -> Choice:
         raise SolveError(
             f"none of the hands {criterion.group} can be made, of {_hands(table.num_rows)}"
         )
-    row = _best_row(table, criterion.merit, selectable)
+    reached = np.array([numbers(table, column) for column in shares])  # (k, n)
+    tried = selectable & np.isfinite(reached).all(axis=0) if shares else np.zeros_like(selectable)
+    if tried.any():
+        worst, mean = reached.min(axis=0), reached.mean(axis=0)
+        merits = [np.round(worst, SHARE_DECIMALS), np.round(mean, SHARE_DECIMALS), criterion.merit]
+        row = _best_row(table, merits, tried)
+        reason = _reason_tried(table, criterion, tried, worst[row], mean[row])
+    else:
+        row = _best_row(table, [criterion.merit], selectable)
+        reason = _reason(table, criterion, selectable, row)
     return Choice(
         id=table["id"][row].as_py(),
         rule=rule,
-        reason=_reason(table, criterion, selectable, row),
+        reason=reason,
         scores={name: table[name][row].as_py() for name in [*single_scores(table), MEAN_SCORE]},
     )
 
@@ -106,9 +130,12 @@ def _all(table: pa.Table) -> Mask:
     return np.ones(table.num_rows, dtype=bool)
 
 
-def _best_row(table: pa.Table, merit: Array, selectable: Mask) -> int:
-    rounded = np.round(merit, MERIT_DECIMALS)
-    best = selectable & (rounded == rounded[selectable].max())
+def _best_row(table: pa.Table, merits: Sequence[Array], selectable: Mask) -> int:
+    """The row that is best by the first merit, of equal ones by the next, and last by its id."""
+    best = selectable
+    for merit in merits:
+        rounded = np.round(merit, MERIT_DECIMALS)
+        best = best & (rounded == rounded[best].max())
     rows = np.flatnonzero(best)
     return int(rows[np.argmin(table["id"].to_numpy()[rows])])
 
@@ -117,6 +144,17 @@ def _reason(table: pa.Table, criterion: Criterion, selectable: Mask, row: int) -
     return (
         f"best {criterion.merit_name} ({criterion.merit[row]:.1f}) of "
         f"{_hands(int(selectable.sum()))} {criterion.group}; {_hands(table.num_rows)} in all, "
+        f"{_refusals(int(np.sum(~flags(table, 'makeable'))))}"
+    )
+
+
+def _reason_tried(
+    table: pa.Table, criterion: Criterion, tried: Mask, worst: float, mean: float
+) -> str:
+    return (
+        f"turns the tool farthest in physics, by {worst:.0%} of the planned range in its worst trial "
+        f"and {mean:.0%} in the mean; tried were {_hands(int(tried.sum()))}, those with the best "
+        f"{criterion.merit_name} {criterion.group}; {_hands(table.num_rows)} in all, "
         f"{_refusals(int(np.sum(~flags(table, 'makeable'))))}"
     )
 

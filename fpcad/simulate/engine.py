@@ -15,4 +15,6 @@ def mujoco() -> ModuleType:
         raise ToolchainError(
             f"simulating needs the Python package {error.name}: `pip install fpcad[physics]`"
         ) from error
+    # Else it writes MUJOCO_LOG.TXT wherever it runs; states that are no numbers end a trial anyway.
+    mujoco.set_mju_user_warning(lambda _: None)  # pyright: ignore[reportAttributeAccessIssue]
     return mujoco

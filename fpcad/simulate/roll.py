@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpcad.errors import MakeError
 from fpcad.simulate.command import Commands
 from fpcad.simulate.engine import mujoco
 from fpcad.simulate.scene import GIVER, Scene
@@ -46,7 +47,10 @@ class Record:
 
 
 def roll(scene: Scene, commands: Commands, joints_rad: Array) -> Record:
-    """Run a trial from joints (n_u,) [rad] on until it ends or the tool is lost."""
+    """Run a trial from joints (n_u,) [rad] on until it ends or the tool is lost.
+
+    A state that is no number ends it too, as a lost tool does.
+    """
     mj, model = mujoco(), scene.model
     data = mj.MjData(model)
     data.qpos[scene.joints] = joints_rad
@@ -60,6 +64,8 @@ def roll(scene: Scene, commands: Commands, joints_rad: Array) -> Record:
         data.ctrl[:n_motors] = commands.motors_rad[tick]
         data.ctrl[n_motors] = commands.tip_force_n[tick]
         mj.mj_step(model, data, steps)
+        if not np.isfinite(data.qpos).all():
+            break
         if tick >= commands.let_go:
             watch.see()
             if watch.is_lost(commands.planned_position_m[tick]):
@@ -90,10 +96,12 @@ class _Watch:
     def is_lost(self, planned: Array) -> bool:
         """Whether the tool is far from where it should be."""
         at = self._data.qpos[self._scene.tool : self._scene.tool + 3]
-        return not np.linalg.norm(at - planned) < LOST_M  # also where it is not a number
+        return bool(np.linalg.norm(at - planned) >= LOST_M)
 
     def record(self, commands: Commands) -> Record:
-        """All that was seen."""
+        """All that was seen; :class:`MakeError` where that is nothing."""
+        if not self._rows:
+            raise MakeError("the simulation is unstable while the fingers close: shorten its steps")
         pose, joints, motors, normal, tangential, slip = (
             np.array(column) for column in zip(*self._rows, strict=True)
         )

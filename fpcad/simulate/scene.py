@@ -105,6 +105,8 @@ def _options(hand: Any, trial: Trial) -> None:
     option.cone = mj.mjtCone.mjCONE_ELLIPTIC
     option.impratio = FRICTION_IMPEDANCE
     option.noslip_iterations = NOSLIP_ITERATIONS
+    # MuJoCo would put a state that is no number back to the start, and a lost tool into the hand.
+    option.disableflags |= mj.mjtDisableBit.mjDSBL_AUTORESET
     down = np.array(trial.gravity) / np.linalg.norm(trial.gravity)
     option.gravity = GRAVITY_M_S2 * down
 

@@ -23,6 +23,8 @@ class Motor:
     stall_torque_nm: float
     """Torque [N m] at which it stands still; it overheats within seconds."""
     no_load_speed_rad_s: float
+    position_range_deg: float
+    """How far it can be told to turn in all, in the mode that its driver uses."""
     mass_g: float
     source: str
     """Data sheet of the values, and what was estimated."""
@@ -65,6 +67,7 @@ def _motor(row: dict[str, str]) -> Motor:
         continuous_torque_nm=float(row["continuous_torque_nm"]),
         stall_torque_nm=float(row["stall_torque_nm"]),
         no_load_speed_rad_s=float(row["no_load_speed_rad_s"]),
+        position_range_deg=float(row["position_range_deg"]),
         mass_g=float(row["mass_g"]),
         source=row["source"],
     )

@@ -71,6 +71,14 @@ class Print(SpecModel):
     """Thinnest wall of a rigid part [mm]: two lines of a 0.4 mm nozzle."""
     skin_wall_mm: Positive = 0.8
     """Thinnest wall of a skin [mm]."""
+    bone_strength_mpa: Positive = 43.7
+    """Normal stress [MPa] at which a rigid part breaks along its layers, as bones are printed to be
+    bent; PLA filament by default, of which 52 % are left across layers (doi 10.1089/3dp.2020.0109)."""
+    bone_bearing_mpa: Positive = 36.4
+    """Pressure [MPa] at which a pin crushes a rigid part; the compressive strength of PLA printed half
+    full by default (Scientific Reports 2025, doi 10.1038/s41598-025-94446-8)."""
+    safety_factor: Annotated[float, Field(ge=1)] = 2.0
+    """What both strengths are divided by before loads are compared with them [-]."""
     overhang_deg: Annotated[float, Field(ge=0, lt=90)] = 45.0
     """Largest angle from the vertical at which a face is printed without support [deg]."""
     mesh_tolerance_mm: Annotated[float, Field(gt=0, le=1)] = 0.05

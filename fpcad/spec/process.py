@@ -110,5 +110,8 @@ class Selection(SpecModel):
     """Best mean score on the Pareto front, best mean score of all, or best lowest score."""
     torque: Literal["mft_p90", "mft"] = "mft_p90"
     """Torque metric that is scored: 90th percentile along the path, or its maximum."""
+    simulate: Annotated[int, Field(ge=0)] = 0
+    """How many of the best hands are tried in MuJoCo before one is chosen; 0 for none. Needs the
+    extra `physics`."""
     resolutions: Resolutions = Resolutions()
     """Differences that do not count."""

@@ -5,6 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 MASK = 2**32 - 1
+DRAWS = 9
+"""Of the generator for one segment."""
+PIECE = 500
+"""Segments that a target is asked for at a time."""
 
 
 def xorshift(state: int) -> int:
@@ -14,16 +18,31 @@ def xorshift(state: int) -> int:
     return state ^ (state << 5 & MASK)
 
 
+def first_state(seed: int) -> int:
+    return seed * 2654435761 % MASK + 1
+
+
+def starts_of_pieces(count: int, seed: int) -> list[int]:
+    """States of the generator before each piece of `count` segments."""
+    state, starts = first_state(seed), []
+    for number in range(count):
+        if number % PIECE == 0:
+            starts.append(state)
+        for _ in range(DRAWS):
+            state = xorshift(state)
+    return starts
+
+
 def random_segments(count: int, seed: int) -> np.ndarray:
     """Rows (count, 9): t p v a, t p v a, elapsed; us and counts of 1e-6.
 
     Rough motions of a hand: within the fixed point's range, far outside the limits.
     """
-    state = seed * 2654435761 % MASK + 1
+    state = first_state(seed)
     rows = np.zeros((count, 9), np.int64)
     for row in rows:
         draws = []
-        for _ in range(9):
+        for _ in range(DRAWS):
             state = xorshift(state)
             draws.append(state)
         duration = 30_000 + draws[0] % 70_000

@@ -8,11 +8,14 @@ import shutil
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fpcad.run.firmware_setup import FirmwareSetup, setup_source
+from fpcad.run.limits import JointLimits
 from tests.firmware.core import FIRMWARE, made
 from tests.run.fixtures import hand_limits, swing
 
@@ -29,30 +32,50 @@ SETUPS = {
 BOOT_NONCE = 7
 
 
-def image(target: str, name: str) -> Path:
-    """An image of the firmware for the hand of the fixtures; skips where a tool is missing."""
+@dataclass(frozen=True)
+class BuiltHand:
+    """The hand that an image is built for, and how its simulated motors are put on."""
+
+    folder: str
+    limits: JointLimits
+    start_rad: np.ndarray  # (n,)
+    zero_error_rad: np.ndarray  # (n,) of the motors
+    setup: dict[str, object] = field(default_factory=dict)
+
+
+WHOLE = BuiltHand("build", hand_limits(), swing().position[0], np.zeros(12))
+
+
+def image(target: str, name: str, hand: BuiltHand = WHOLE) -> Path:
+    """An image of the firmware for a hand, that of the fixtures; skips where a tool is missing."""
     for tool in TOOLS[target]:
         if shutil.which(tool) is None:
             pytest.skip(f"needs {tool}")
-    setup = FirmwareSetup(hand_limits(), boot_nonce=BOOT_NONCE, **SETUPS[target])
-    source = FIRMWARE / "build" / f"{target}_setup.c"
-    source.parent.mkdir(exist_ok=True)
-    text = setup_source(setup, swing().position[0].tolist())
+    setup = FirmwareSetup(hand.limits, **{"boot_nonce": BOOT_NONCE, **SETUPS[target], **hand.setup})
+    source = FIRMWARE / hand.folder / f"{target}_setup.c"
+    source.parent.mkdir(exist_ok=True, parents=True)
+    text = setup_source(setup, hand.start_rad.tolist(), hand.zero_error_rad.tolist())
     if not source.is_file() or source.read_text() != text:
         source.write_text(text)
-    return made(target, f"SETUP=build/{source.name}") / name
+    file = f"{hand.folder}/{name}"
+    made(file, f"BUILD={hand.folder}", f"SETUP={hand.folder}/{source.name}")
+    return FIRMWARE / file
 
 
 @contextmanager
-def running(target: str, *, segments: bool = False) -> Iterator[str]:
-    """Name of the port at which a microcontroller that has just booted answers."""
-    elf = image(target, f"{target}{'_segments' if segments else ''}.elf")
+def running(target: str, name: str = "", hand: BuiltHand = WHOLE) -> Iterator[str]:
+    """Name of the port at which a microcontroller that has just booted answers.
+
+    `name`: another image than the target's usual one.
+    """
+    elf = image(target, name or f"{target}.elf", hand)
     if target == "avr":
-        with _process([str(elf.parent / "simulate_avr"), str(elf)]) as name:
-            yield name
+        made("build/simulate_avr")
+        with _process([str(FIRMWARE / "build" / "simulate_avr"), str(elf)]) as port:
+            yield port
     else:
-        with qemu(elf) as name:
-            yield name
+        with qemu(elf) as port:
+            yield port
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from fpcad.run.messages import Cause, State
 from fpcad.run.quintic import Knots
 from tests.firmware.core import DEATH, HEAT, JAM, STUCK, core_controller, made
 from tests.run.fixtures import hand_limits, swing
-from tests.run.test_stream import at, run
+from tests.run.streaming import at, run
 from tests.run.virtual import VirtualLine
 
 MOTION = swing(2.0, 51, amplitude=0.25)

@@ -9,6 +9,7 @@ from contextlib import closing
 import pytest
 
 from fpcad.run.port import open_port
+from tests.firmware.core import made
 from tests.firmware.targets import image, qemu
 
 INSTRUCTIONS_A_COUNT = 40
@@ -54,7 +55,8 @@ def test_a_32_bit_controller_has_time_for_a_thousand_ticks_a_second(name):
 
 def test_an_avr_is_too_slow_for_a_hand_and_says_how_much():
     elf = image("avr", "avr_timing.elf")
-    done = subprocess.run([elf.parent / "time_avr", elf], capture_output=True, text=True)
+    timer = made("build/time_avr") / "time_avr"
+    done = subprocess.run([timer, elf], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     print(done.stdout)
     tick, stop = (longest_ms(done.stdout, piece) for piece in ("a tick", "torque off"))

@@ -101,16 +101,17 @@ def test_a_grip_that_jams_on_its_tool_is_no_fault():
     assert played.final_state == "READY"
 
 
-@pytest.mark.parametrize(
-    ("before", "t_us", "preload", "joint"),
-    [
-        ([], 0, [0] * 11 + [200], 11),
-        ([0], 100_000, [0, 0.15 / COUNT, *[0] * 10], 1),
-        ([0, 0.4, 0.49], 2_000_000, [0.49 / COUNT] * 5 + [0.52 / COUNT] + [0.49 / COUNT] * 6, 5),
-        ([0, -0.4, -0.49], 2_000_000, [-0.52 / COUNT] + [-0.49 / COUNT] * 11, 0),
-    ],
-    ids=["from the first knot", "too fast", "too much", "too much the other way"],
-)
+BEYOND = [
+    ([], 0, [0] * 11 + [200], 11),
+    ([0], 100_000, [0, counts(0.15)[1], *[0] * 10], 1),
+    ([0, 0.4, 0.49], 2_000_000, counts([0.49] * 5 + [0.52] + [0.49] * 6), 5),
+    ([0, -0.4, -0.49], 2_000_000, counts([-0.52] + [-0.49] * 11), 0),
+]
+"""Preloads that knots have had, half a second apart; then when, which one is too much, and where."""
+BEYOND_IDS = ["from the first knot", "too fast", "too much", "too much the other way"]
+
+
+@pytest.mark.parametrize(("before", "t_us", "preload", "joint"), BEYOND, ids=BEYOND_IDS)
 def test_a_preload_beyond_its_bounds_is_refused_and_changes_nothing(before, t_us, preload, joint):
     bench = Bench()
     bench.device.tick()
@@ -118,7 +119,7 @@ def test_a_preload_beyond_its_bounds_is_refused_and_changes_nothing(before, t_us
     for number, rad in enumerate(before):
         assert isinstance(bench.ask(knot(500_000 * number, preload=counts(rad))), Ack)
     queued = bench.device.follower.queued
-    answer = bench.ask(knot(t_us, preload=[int(x) for x in preload]))
+    answer = bench.ask(knot(t_us, preload=preload))
     assert (answer.reason, answer.joint) == (Reason.PRELOAD_LIMIT, joint)
     assert bench.device.follower.queued == queued
 

@@ -13,7 +13,9 @@ from fpcad.run.messages import (
     Arm,
     AskHoming,
     AskLimits,
+    End,
     Estop,
+    Health,
     Hello,
     Home,
     Knot,
@@ -23,14 +25,16 @@ from fpcad.run.messages import (
     Refused,
     Start,
     State,
+    Telemetry,
 )
 from fpcad.run.port import open_port
 from fpcad.run.run_trajectory import SIMULATED_PORTS, run_trajectory
 from fpcad.run.sim.states import NEXT
 from tests.firmware.core import made
-from tests.firmware.segments import random_segments
+from tests.firmware.segments import PIECE, random_segments, starts_of_pieces
 from tests.firmware.targets import SETUPS, running
 from tests.firmware.test_core import reference
+from tests.firmware.test_preload import BEYOND, BEYOND_IDS, counts
 from tests.firmware.wire import WireBench
 from tests.run.fixtures import hand_limits, swing, write_trajectory
 from tests.run.proxy import damaged_port
@@ -121,6 +125,27 @@ def test_a_full_buffer_refuses_knots(bench):
     assert isinstance(answers[-1], Refused) and answers[-1].reason == Reason.BUFFER_FULL
 
 
+@pytest.mark.parametrize(("before", "t_us", "preload", "joint"), BEYOND, ids=BEYOND_IDS)
+def test_a_preload_beyond_its_bounds_is_refused(bench, before, t_us, preload, joint):
+    bench.into(State.ARMED, [knot(500_000 * k, preload=counts(x)) for k, x in enumerate(before)])
+    answer = bench.ask(knot(t_us, preload=preload))
+    assert (answer.reason, answer.joint) == (Reason.PRELOAD_LIMIT, joint)
+
+
+@pytest.mark.real_time
+def test_a_grip_closes_holds_and_opens(bench):
+    grip = tuple(counts([0.1, 0.0, 0.2] * 4))
+    path = [knot(500_000 * k, preload=p) for k, p in enumerate((counts(0), grip, grip, counts(0)))]
+    bench.into(State.RUNNING, (*path, End(len(path))))
+    bench.stay_until(lambda m: isinstance(m, Health) and tells(m, grip))
+    bench.stay_until(lambda m: isinstance(m, Telemetry) and m.state == State.READY)
+    bench.stay_until(lambda m: isinstance(m, Health) and tells(m, counts(0)))
+
+
+def tells(health, preload):
+    return np.abs(np.subtract(health.preload_20urad, preload)).max() <= 1
+
+
 def test_strangers_may_only_stop(bench):
     bench.into(State.ARMED, RESTING)
     assert isinstance(bench.ask(Ping(1), session=999), NoSession)
@@ -165,16 +190,29 @@ def test_a_trajectory_is_followed_over_a_bad_line(port, tmp_path, request):
 @pytest.mark.parametrize("target", SETUPS)
 def test_quintics_agree_within_a_count_on(target):
     count, seed = 10_000, 5
-    with running(target, segments=True) as name, closing(open_port(name)) as line:
-        line.write(struct.pack("<II", seed * 2654435761 % (2**32 - 1) + 1, count))
-        data, deadline = b"", time.monotonic() + 300
-        while len(data) < 12 * count and time.monotonic() < deadline:
-            data += line.read()
-    results = np.frombuffer(data, "<i4").reshape(-1, 3)
+    with running(target, f"{target}_segments.elf") as name, closing(open_port(name)) as line:
+        pieces = [ask_for_segments(line, start) for start in starts_of_pieces(count, seed)]
+    results = np.concatenate(pieces)
     assert len(results) == count
     motion = reference(random_segments(count, seed))
     wanted = np.stack([motion.position, motion.velocity, motion.acceleration], axis=1) * 1e6
     assert np.abs(results - wanted).max() <= 1
+
+
+def ask_for_segments(line, start, tries=3):
+    """Results (PIECE, 3) of the segments that follow from a state of the generator.
+
+    A pseudo terminal whose reader gets no turn loses bytes, so a piece that is short is asked for again.
+    """
+    for _ in range(tries):
+        line.write(struct.pack("<II", start, PIECE))
+        data, heard_s = b"", time.monotonic()
+        while len(data) < 12 * PIECE and time.monotonic() - heard_s < 2.0:
+            more = line.read()
+            data, heard_s = data + more, time.monotonic() if more else heard_s
+        if len(data) == 12 * PIECE:
+            return np.frombuffer(data, "<i4").reshape(-1, 3)
+    raise AssertionError(f"{len(data)} bytes of {12 * PIECE}")
 
 
 def test_knots_beyond_the_joints_are_malformed(bench):

@@ -70,6 +70,17 @@ class WireBench:
                     return message
         return None
 
+    def stay_until(self, wanted, patience_s=10.0):
+        """The next message that is wanted, while the controller hears that its host is there."""
+        deadline = time.monotonic() + patience_s
+        while time.monotonic() < deadline:
+            ping = Frame(KINDS[Ping].code, 0, self.session, encode(Ping(1)))
+            self._line.write(encode_frame(ping))
+            found = self.wait_for(wanted, patience_s=0.1)
+            if found is not None:
+                return found
+        raise AssertionError(f"waited in vain; last: {self.last}")
+
     def now(self) -> Telemetry:
         """The next telemetry."""
         found = self.wait_for(lambda m: isinstance(m, Telemetry))

@@ -8,7 +8,14 @@ from pathlib import Path
 import pyarrow as pa
 import pytest
 
-from fpcad.look.built import check_warnings, checks, parts_list, refusals, torque_warnings
+from fpcad.look.built import (
+    check_warnings,
+    checks,
+    loads,
+    parts_list,
+    refusals,
+    torque_warnings,
+)
 from fpcad.look.document import build_document
 from fpcad.look.run import Run, load
 from fpcad.look.words import summarize
@@ -54,10 +61,22 @@ def test_many_warnings_of_the_gates_are_one_at_the_top(exported: Run):
     assert "warn 5 times; the first: palm: a wall of 0.90 mm where" in told
 
 
+def test_loads_are_listed_the_heaviest_first(exported: Run):
+    text = (
+        "pose,case,what,where,load,limit,unit,share,at_deg\n"
+        "carve,gripping,strand,m1 strand,60,300,N,0.200,12.0\n"
+        "poke,gripping,bearing,IP ball MR63,111,74,N,1.500,\n"
+    )
+    write_whole(exported.folder / "parts" / "loads.csv", text)
+    assert [row["where"] for row in loads(exported)] == ["IP ball MR63", "m1 strand"]
+    told = summarize(exported, build_document(exported)[0])
+    assert told.loads == loads(exported)
+
+
 def test_what_was_left_by_an_export_that_is_not_done_is_not_told(exported: Run):
     write_manifest(exported.folder, {**dict.fromkeys(STAGES, "done"), "export": "running"})
     run = load(exported.folder)
-    assert checks(run) == parts_list(run) == []
+    assert checks(run) == parts_list(run) == loads(run) == []
 
 
 def test_refusals_are_counted_by_their_reason(exported: Run):

@@ -4,21 +4,24 @@ import base64
 import json
 import re
 import zlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 
 from fpcad.errors import StoreError
+from fpcad.look import meshes
 from fpcad.look.curves import efficiency, outcome_counts, range_shares, share_above
-from fpcad.look.document import build_document
+from fpcad.look.document import OPENING, build_document
 from fpcad.look.figures import FIGURES, write_figures
 from fpcad.look.hands import hand_dimensions
 from fpcad.look.holding import HoldingForces
 from fpcad.look.kept import KEYFRAMES
 from fpcad.look.layout import layout_of
-from fpcad.look.meshes import chosen_meshes
+from fpcad.look.meshes import SHOWN_WITHIN_MM, LinkMesh, chosen_meshes, simplified
 from fpcad.look.pack import Packer
 from fpcad.look.paths import PathStates, stored_paths
 from fpcad.look.poses import pose_states
@@ -35,11 +38,16 @@ TYPES = {"f4": "<f4", "i2": "<i2", "i4": "<i4", "u1": "u1"}
 
 def unpacked(reference: dict[str, Any], blocks: dict[str, str]) -> np.ndarray:
     """What the page's script makes of a reference, in a few lines of Python."""
-    block = zlib.decompress(base64.b64decode(blocks[reference["in"]]))
+    name, n, at = reference["in"], reference["n"], reference["at"]
     kind = np.dtype(TYPES[reference["type"]])
-    n, at = reference["n"], reference["at"]
-    planes = np.frombuffer(block[at : at + n * kind.itemsize], np.uint8)
-    values = planes.reshape(kind.itemsize, n).T.copy().view(kind).reshape(reference["shape"])
+    block = base64.b64decode(blocks[name])
+    if name == OPENING:  # the plain one
+        assert at % kind.itemsize == 0
+        values = np.frombuffer(block, kind, n, at)
+    else:
+        planes = np.frombuffer(zlib.decompress(block), np.uint8, n * kind.itemsize, at)
+        values = planes.reshape(kind.itemsize, n).T.copy().view(kind)
+    values = values.reshape(reference["shape"])
     if "scale" not in reference:
         return values
     if reference["delta"]:
@@ -58,9 +66,11 @@ def test_quantized_numbers_come_back_within_a_65000th_of_their_range(delta):
     assert np.abs(found - values).max() > 0
 
 
-def test_packed_numbers_come_back_as_they_were():
-    pack = Packer("a")
+@pytest.mark.parametrize("name", ["a", OPENING])
+def test_packed_numbers_come_back_as_they_were(name):
+    pack = Packer(name, plain=name == OPENING)
     told = [
+        (pack.integers([1, 2, 3]), [1, 2, 3]),
         (pack.exact([1.5, np.nan]), [1.5, np.nan]),
         (pack.integers([-1, 70_000]), [-1, 70_000]),
         (pack.integers(np.array([True, False])), [1, 0]),
@@ -68,7 +78,7 @@ def test_packed_numbers_come_back_as_they_were():
         (pack.quantized([]), []),
     ]
     for reference, values in told:
-        assert unpacked(reference, {"a": pack.text()}) == pytest.approx(
+        assert unpacked(reference, {name: pack.text()}) == pytest.approx(
             np.array(values), nan_ok=True
         )
 
@@ -146,11 +156,35 @@ def test_the_page_opens_with_the_first_block_alone(real_run: Run):
 
 
 def test_each_mesh_of_the_urdf_is_there_once(real_run: Run):
-    meshes = chosen_meshes(real_run.folder / "hand" / "urdf" / "clay.urdf")
-    assert len({mesh.file for mesh in meshes}) == len(meshes)
-    links = {link for mesh in meshes for link in mesh.links}
+    found = chosen_meshes(real_run.folder / "hand" / "urdf" / "clay.urdf")
+    assert len({mesh.file for mesh in found}) == len(found)
+    links = {link for mesh in found for link in mesh.links}
     assert {"palm", "thumb_mcp", "index_proximal", "ring_distal"} <= links
-    assert all(np.abs(mesh.vertices_mm).max() < 300 for mesh in meshes)
+    assert all(np.abs(mesh.vertices_mm).max() < 300 for mesh in found)
+
+
+def ball(halvings: int) -> LinkMesh:
+    sphere = trimesh.creation.icosphere(subdivisions=halvings, radius=20.0)
+    return LinkMesh("ball", ("palm",), sphere.vertices, sphere.faces, (1.0, 1.0, 1.0))
+
+
+def test_a_fine_mesh_loses_triangles_and_keeps_its_surface():
+    (shown,) = simplified([ball(6)])
+    assert len(shown.faces) < len(ball(6).faces) / 10
+    assert np.linalg.norm(shown.vertices_mm, axis=1) == pytest.approx(20.0, abs=SHOWN_WITHIN_MM)
+
+
+def test_too_many_triangles_are_shown_coarser(monkeypatch: pytest.MonkeyPatch):
+    (fine,) = simplified([ball(5)])
+    monkeypatch.setattr(meshes, "MAX_TRIANGLES", len(fine.faces) - 1)
+    (coarse,) = simplified([ball(5)])
+    assert 20 < len(coarse.faces) < len(fine.faces)
+
+
+def test_a_mesh_that_is_not_closed_stays_as_it_is():
+    whole = ball(3)
+    open_one = replace(whole, faces=whole.faces[1:])
+    assert simplified([open_one]) == [open_one]
 
 
 def test_a_page_holds_everything_and_is_the_same_again(made_up: Run):
@@ -160,6 +194,13 @@ def test_a_page_holds_everything_and_is_the_same_again(made_up: Run):
     data = re.search(r'<script type="application/json" id="run">(.*?)</script>', page, re.DOTALL)
     assert data
     assert json.loads(data.group(1))["candidates"]["count"] == 60
+
+
+def test_the_summary_stands_before_every_script_and_all_data(made_up: Run):
+    before, _, _ = report_page(made_up).partition("<script")
+    assert made_up.selected is not None
+    assert f"Chosen: hand {made_up.selected['id']}" in before
+    assert "</main>" in before
 
 
 def test_shares_are_counted_above_each_threshold():

@@ -7,16 +7,19 @@ from pathlib import Path
 
 import numpy as np
 
+from fpcad.make.documents.stamp import Stamp
 from fpcad.make.parts.assembly import Assembly, make_assembly
 from fpcad.make.parts.part import Part
 from fpcad.model.geometry import HandGeometry, hand_geometry
 from fpcad.model.hand import hand_template
+from fpcad.spec.dump import spec_hash
 from fpcad.spec.load import load_spec
 from fpcad.spec.schema import Spec
 from fpcad.units import to_internal
 
 CLAY = load_spec(Path(__file__).parents[2] / "designs" / "clay.yaml")
 TEMPLATE = hand_template(CLAY.hand)
+STAMP = Stamp("clay", 24, spec_hash(CLAY))
 CENTRE = (42.5, 85.0, 30.0, 16.0, 75.0, 0.0)
 CORNERS = (
     (30.0, 50.0, 21.0, 18.0, 120.0, 0.0),

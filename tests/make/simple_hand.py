@@ -17,8 +17,7 @@ from fpcad.make.mesh import in_metres, stl_bytes
 from fpcad.make.trajectory import ToolMotion, Trajectory
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.geometry import HandGeometry
-from fpcad.store import write_whole
-from tests.make.hands import CENTRE, CLAY, TEMPLATE, geometry_of
+from tests.make.hands import CENTRE, CLAY, STAMP, TEMPLATE, geometry_of
 
 Array = NDArray[np.float64]
 
@@ -69,9 +68,9 @@ def simple_robot(values: tuple[float, ...]) -> Robot:
 def write_simple_hand(values: tuple[float, ...], hand: Path) -> Path:
     """Write a whole `hand` folder and return it."""
     for name, mesh in simple_meshes(geometry_of(values)).items():
-        write_whole(hand / "meshes" / "visual" / f"{name}.stl", stl_bytes(in_metres(mesh)))
-    write_description(simple_robot(values), TRAJECTORIES, hand)
-    write_whole(hand / "transmission.yaml", transmission_yaml(CLAY, geometry_of(CENTRE)))
+        STAMP.write(hand / "meshes" / "visual" / f"{name}.stl", stl_bytes(in_metres(mesh)))
+    write_description(simple_robot(values), TRAJECTORIES, hand, STAMP)
+    STAMP.write(hand / "transmission.yaml", transmission_yaml(CLAY, geometry_of(CENTRE)))
     return hand
 
 

@@ -10,7 +10,7 @@ import trimesh
 
 from fpcad.errors import FpcadError
 from fpcad.make.mesh import mesh_of
-from fpcad.make.parts.dimensions import finger_dimensions
+from fpcad.make.parts.dimensions import FLAT_MM, finger_dimensions
 from fpcad.make.parts.interlock import LUG_MM, WIDTH_SHARE, Link, lug_range
 from fpcad.make.parts.skin import distal_skin, open_share
 from fpcad.make.parts.solids import ball, capsule, finger_core
@@ -33,6 +33,7 @@ def test_meshes_lose_little_volume(clay_parts):
 def test_fingers_share_their_parts(clay_parts):
     assert {name: part.count for name, part in clay_parts.items()} == {
         "palm": 1,
+        "palm_pad": 1,
         "mcp_cross": 4,
         "input_pulley": 8,
         "idler_pulley": 4,
@@ -55,28 +56,37 @@ def bend_moment(outer: float, inner: float) -> float:
 
 
 def lugs_volume(link: Link) -> float:
-    """Volume of both lugs of a skin: from a flat inside the bone out to the bore."""
+    """Volume of both lugs of a skin: from a flat inside the bone out to the bore, or to its flat."""
     d, (low, high) = DIMENSIONS, lug_range(DIMENSIONS, link)
     half, bore = WIDTH_SHARE * d.bone / 2, d.skin_inner
     segment = half * math.sqrt(bore**2 - half**2) + bore**2 * math.asin(half / bore)
-    return 2 * (high - low) * (segment - 2 * half * (d.bone - LUG_MM))
+    inner = 2 * half * (d.bone - LUG_MM)
+    return (high - low) * (segment - inner + 2 * half * (bore - FLAT_MM) - inner)
+
+
+def flat_volume(length: float) -> float:
+    """What a flat makes a bent tube of the skin thicker: a segment of its bore, cut by the bend plane."""
+    r, h = DIMENSIONS.skin_inner, DIMENSIONS.skin_inner - FLAT_MM
+    segment = r**2 * math.acos(h / r) - h * math.sqrt(r**2 - h**2)
+    moment = (r**3 / 3) - (r**2 * h / 2 - h**3 / 6)  # of |z| over its half with z < 0
+    return segment * length - math.tan(DIMENSIONS.ip_flex[1] / 2) * moment
 
 
 def test_proximal_skin_has_its_closed_form_volume(clay_parts):
     d = DIMENSIONS
     length = d.proximal_length - d.clearance - d.shaft_start
     sleeve = bent_ring_volume(d.skin_outer, d.skin_inner, length, d.ip_flex[1] / 2)
-    expected = sleeve + lugs_volume("proximal")
+    expected = sleeve + lugs_volume("proximal") + flat_volume(length)
     assert clay_parts["proximal_skin"].solid.Volume() == pytest.approx(expected, rel=1e-6)
 
 
 def test_distal_skin_has_its_closed_form_volume(clay_parts):
     d = DIMENSIONS
-    tube = bent_ring_volume(
-        d.skin_outer, d.skin_inner, d.distal_axis_length - d.clearance, d.ip_flex[1] / 2
-    )
+    length = d.distal_axis_length - d.clearance
+    tube = bent_ring_volume(d.skin_outer, d.skin_inner, length, d.ip_flex[1] / 2)
     cap = 2 / 3 * math.pi * (d.skin_outer**3 - d.skin_inner**3)
-    expected = tube + cap + lugs_volume("distal")
+    cap += math.pi / 6 * FLAT_MM**2 * (3 * d.skin_inner - FLAT_MM)
+    expected = tube + cap + lugs_volume("distal") + flat_volume(length)
     assert clay_parts["distal_skin"].solid.Volume() == pytest.approx(expected, rel=1e-6)
 
 

@@ -15,6 +15,7 @@ from fpcad.make.trajectory import Trajectory, build_trajectory
 from fpcad.make.trajectory_file import read_trajectory, write_trajectory
 from fpcad.spec.pose import Turning
 from fpcad.units import RAD_PER_DEG
+from tests.make.hands import STAMP
 from tests.make.mechanism import Mechanism, mechanism
 
 MOTOR_SPEED = np.full((4, 3), 4.0)
@@ -206,13 +207,13 @@ def test_very_short_path_has_a_motion():
 
 def test_same_path_gives_the_same_bytes(tmp_path: Path):
     for name in ("a.json", "b.json"):
-        write_trajectory(build(CASES["kinks"], 3, 3), tmp_path / name)
+        write_trajectory(build(CASES["kinks"], 3, 3), tmp_path / name, STAMP)
     assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
     assert sorted(file.name for file in tmp_path.iterdir()) == ["a.json", "b.json"]
 
 
 def test_file_has_the_keys_and_shapes_that_readers_expect(carve: Trajectory, tmp_path: Path):
-    write_trajectory(carve, tmp_path / "carve.json")
+    write_trajectory(carve, tmp_path / "carve.json", STAMP)
     document = json.loads((tmp_path / "carve.json").read_text())
     count = len(document["time_s"])
     assert document["joint_names"][:4] == [
@@ -232,7 +233,7 @@ def test_file_has_the_keys_and_shapes_that_readers_expect(carve: Trajectory, tmp
 def test_file_is_read_as_it_was_written(carve: Trajectory, tmp_path: Path):
     preloaded = replace(carve, position_preload_rad=carve.position_rad + 0.01)
     for trajectory in (carve, preloaded):
-        write_trajectory(trajectory, tmp_path / "carve.json")
+        write_trajectory(trajectory, tmp_path / "carve.json", STAMP)
         again = read_trajectory(tmp_path / "carve.json")
         assert again.joint_names == trajectory.joint_names
         assert again.contacts == trajectory.contacts
@@ -253,7 +254,7 @@ def test_file_is_read_as_it_was_written(carve: Trajectory, tmp_path: Path):
 )
 def test_damaged_file_is_refused(carve: Trajectory, tmp_path: Path, damage, message: str):
     file = tmp_path / "carve.json"
-    write_trajectory(carve, file)
+    write_trajectory(carve, file, STAMP)
     document = json.loads(file.read_text())
     damage(document)
     file.write_text(json.dumps(document))
@@ -264,7 +265,7 @@ def test_damaged_file_is_refused(carve: Trajectory, tmp_path: Path, damage, mess
 
 def test_file_that_is_cut_off_is_refused(carve: Trajectory, tmp_path: Path):
     file = tmp_path / "carve.json"
-    write_trajectory(carve, file)
+    write_trajectory(carve, file, STAMP)
     file.write_text(file.read_text()[:-1000])
     with pytest.raises(StoreError):
         read_trajectory(file)
@@ -279,5 +280,5 @@ def test_failed_write_leaves_the_old_file(carve: Trajectory, tmp_path: Path, mon
 
     monkeypatch.setattr("os.fsync", fails)
     with pytest.raises(OSError, match="disk full"):
-        write_trajectory(carve, file)
+        write_trajectory(carve, file, STAMP)
     assert file.read_text() == "old" and list(tmp_path.iterdir()) == [file]

@@ -9,7 +9,7 @@ from fpcad.run.drivers.sim import SimBus
 from fpcad.run.errors import RunError
 from fpcad.run.options import RunOptions
 from fpcad.run.run_trajectory import run_on_servos
-from fpcad.run.servo_driver import ServoGuards
+from fpcad.run.servo_guard import ServoGuards
 from tests.run.drivers.rigs import MOTORS, motor_map, mounting, tendon_hand
 from tests.run.fixtures import hand_limits, swing, write_trajectory
 

@@ -9,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fpcad.cli import app
+from fpcad.run import stream
 from fpcad.run.calibration import (
     Calibration,
     read_calibration,
@@ -156,18 +157,31 @@ def test_servos_are_listed_and_numbered(fpcad):
         assert 1 in bench.memory and 25 not in bench.memory
 
 
-def test_the_firmware_homes_itself_and_its_zeros_are_kept(fpcad, design):
+@pytest.mark.real_time
+def test_the_firmware_is_calibrated_and_what_it_found_is_kept(fpcad, design, monkeypatch):
     made("host")
+    monkeypatch.setattr(stream, "START_LEAD_S", 0.06)  # a hurried controller needs less
     hand = the_hand(design)
     zero = np.linspace(-0.3, 0.3, 12)
     unhomed = {"homed": False, "zero_error_rad": zero, "homing_speed_rad_s": 2.0}
     start = np.tile([0.3, 0.0, 0.4], 4)
-    with firmware_process(hand.limits, start, clock_rate=12.0, **unhomed) as device:
-        fpcad("home", "--port", device.port)
+    with firmware_process(hand.limits, start, clock_rate=20.0, **unhomed) as device:
+        said = fpcad("calibrate", "--port", device.port, "--yes")
+    assert "zeros of 12 motors written to" in said
     kept = read_calibration(
         design.parent / "calibration" / "clay.yaml", hand.motors, hand.limits, "fw"
     )
     assert np.abs(np.abs(kept.zero_rad) - np.abs(zero)).max() < np.radians(1.5)
+    # Tendons of 30 N m/rad and the end stops' own softness; see test_preload_pull.py.
+    assert ((kept.stiffness_nm_rad > 18) & (kept.stiffness_nm_rad < 31)).all()
+
+
+@pytest.mark.real_time
+def test_slack_is_told_behind_the_firmware_too(fpcad, monkeypatch):
+    made("host")
+    monkeypatch.setattr(stream, "START_LEAD_S", 0.06)
+    said = fpcad("tension", "--port", "fw:20", "--motor", "thumb_m1", "--yes")
+    assert "thumb_m1: slack 0." in said and said.strip().endswith("good")
 
 
 @pytest.mark.parametrize(

@@ -206,7 +206,7 @@ def test_a_killed_host_leaves_joints_at_rest_and_no_process(tmp_path, phase_s, p
     time_s, state, rate, command = rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3:15]
     assert state[-1] == State.HOLD and rate[-1] == 0
     running = time_s[state == State.RUNNING]
-    assert running[-1] - running[0] < 5.5  # of 6 s; test_stream.py holds the exact time
+    assert running[-1] - running[0] < 5.5  # of 6 s; test_silence.py holds the exact time
     assert time_s[-1] - running[-1] < 0.2  # to slow down
     acceleration = np.abs(np.diff(command, 2, axis=0)).max() * TICK_HZ**2
     assert acceleration <= hand_limits().acceleration_rad_s2[0] * 1.05

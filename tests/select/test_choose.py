@@ -7,7 +7,7 @@ import pyarrow as pa
 import pytest
 
 from fpcad.errors import SolveError
-from fpcad.select.choose import RULES, choose
+from fpcad.select.choose import RULES, choose, finalists
 from fpcad.select.ranking import rank_table
 from fpcad.spec.process import Selection
 from tests.select.tables import POSES, metrics_table, random_metrics
@@ -140,3 +140,54 @@ def test_nothing_to_choose_from_names_the_most_frequent_reason():
 def test_an_empty_table_is_told_apart():
     with pytest.raises(SolveError, match="no hand to choose from"):
         choose(ranked(BY_HAND).slice(0, 0), "best_mean")
+
+
+SHARES = ("carve_held_share", "poke_held_share")
+
+
+def tried(carve, poke, **columns):
+    """BY_HAND with shares of the planned range; None where a hand was not tried."""
+    shares = [pa.array(values, pa.float64()) for values in (carve, poke)]
+    return ranked(BY_HAND, **dict(zip(SHARES, shares, strict=True)), **columns)
+
+
+def test_finalists_are_the_best_by_the_rule_that_can_be_made():
+    table = ranked(BY_HAND, pareto=[True, True, False, True])
+    assert finalists(table, "best_mean_on_front", 2) == [1, 3]
+    assert finalists(table, "best_mean_on_front", 9) == [1, 3, 0]
+    assert finalists(ranked(BY_HAND, makeable=[True, False, True, True]), "best_mean", 2) == [3, 0]
+
+
+def test_equal_finalists_come_by_their_ids():
+    assert finalists(ranked([[50, 50]] * 4, id=[7, 9, 3, 5]), "best_mean", 2) == [3, 5]
+
+
+@pytest.mark.parametrize(
+    ("carve", "poke", "chosen"),
+    [
+        ([0.9, 0.9, None, 0.9], [0.2, 0.3, None, 0.4], 3),  # by the worst trial
+        ([0.8, 0.7, None, 0.9], [0.4, 0.4, None, 0.4], 3),  # then by the mean
+        ([0.8, 0.8, None, 0.8], [0.4, 0.4, None, 0.404], 1),  # a hundredth says nothing: the rule
+        ([None, None, 0.1, None], [None, None, 0.0, None], 2),  # tried before all others
+        ([None] * 4, [None] * 4, 1),  # nothing tried
+        ([0.9, None, None, None], [None] * 4, 1),  # not tried in all poses
+    ],
+)
+def test_physics_comes_before_the_rule(carve, poke, chosen):
+    assert choose(tried(carve, poke), "best_mean", SHARES).id == chosen
+
+
+def test_a_finalist_that_cannot_be_made_is_not_chosen():
+    table = tried([0.9, 0.8, None, 0.1], [0.9, 0.8, None, 0.1], makeable=[False, True, True, True])
+    assert choose(table, "best_mean", SHARES).id == 1
+    none_left = tried([0.9] + 3 * [None], [0.9] + 3 * [None], makeable=[False, True, True, True])
+    assert choose(none_left, "best_mean", SHARES).id == 1
+
+
+def test_the_reason_tells_what_physics_said():
+    table = tried([0.9, 0.9, None, None], [0.2, 0.3, None, None])
+    assert choose(table, "best_mean", SHARES).reason == (
+        "turns the tool farthest in physics, by 30% of the planned range in its worst trial and 60% "
+        "in the mean; tried were 2 hands, those with the best mean score that can be made; "
+        "4 hands in all, none refused so far"
+    )

@@ -8,12 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.physics_hypothesis.hands import plain_bodies
-from fpcad.make.description import describe
-from fpcad.make.description.mjcf import hand_mjcf
 from fpcad.make.preload.tighten import tightened
 from fpcad.make.trajectory import ToolMotion, Trajectory
-from fpcad.simulate.engine import mujoco
+from fpcad.simulate.candidate import plain_hand
 from fpcad.simulate.roll import Record
 from fpcad.simulate.setting import Trial
 from fpcad.simulate.trials import run_trial
@@ -57,8 +54,7 @@ class Gripping:
     @cached_property
     def hand(self) -> Any:
         m = self.mechanism
-        robot = describe(m.spec, m.geometry, plain_bodies(m.geometry), {})
-        return mujoco().MjSpec.from_string(hand_mjcf(robot))
+        return plain_hand(m.spec, m.geometry, {})
 
     def run(self, **trial) -> Record:
         spec = self.mechanism.spec

@@ -76,6 +76,14 @@ def test_half_the_time_step_ends_in_the_same_place(grip: Gripping, record: Recor
     assert np.abs(finer.tool_pose[-1, :3] - record.tool_pose[-1, :3]).max() < 2e-5
 
 
+def test_a_simulation_that_falls_apart_is_told_of(grip: Gripping, tmp_path, monkeypatch):
+    """MuJoCo by itself would put the tool back into the hand, and write a log where it runs."""
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(MakeError, match="unstable while the fingers close"):
+        grip.run(tool_mass_kg=1e-5, time_step_s=2e-3)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_trajectory_without_preload_is_refused(grip: Gripping):
     with pytest.raises(MakeError, match="no grip preload"):
         run_trial(grip.hand, grip.mechanism.spec, "", grip.without_preload(), Trial())

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from fpcad.run.driver import Watch
-from fpcad.run.errors import ControllerHeld, ControllerSilent, LinkLost
+from fpcad.run.errors import ControllerSilent, LinkLost
 from fpcad.run.firmware import FirmwareDriver
 from fpcad.run.knots import from_wire, to_wire
 from fpcad.run.messages import State
@@ -23,7 +23,7 @@ from tests.firmware.byte_log import Recorded, kept_on_failure
 from tests.firmware.core import core_controller, made
 from tests.firmware.cuts import DIRECTIONS, Cuts, bytes_of_a_session
 from tests.run.fixtures import hand_limits, swing
-from tests.run.test_stream import KNOTS
+from tests.run.streaming import KNOTS
 from tests.run.virtual import Damage, VirtualLine, bit_flips, lost_bytes, lost_frames
 
 FRAMES = {"bit_flips": 1_000_000, "lost_bytes": 300_000, "mangled": 300_000}
@@ -99,7 +99,7 @@ def damaged_run(damage, rate: float, seed: int, tally: Tally) -> str:
         assert played.final_state == "READY" and faithful.ticks == 999
         tally.complete += 1
         tally.resends += played.resends
-    except (LinkLost, ControllerHeld, ControllerSilent) as error:
+    except (LinkLost, ControllerSilent) as error:
         end = type(error).__name__
         line.let_pass(1.5)
         with kept_on_failure(line.device, "damaged_run"):

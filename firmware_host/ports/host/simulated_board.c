@@ -21,7 +21,7 @@ bool device_mishap(struct device *device, const char *kind, uint8_t number)
         bool *of_motor;
     } switches[] = {
         {"jam", plant->jammed}, {"death", plant->dead}, {"stuck", plant->stuck},
-        {"weak", plant->weak}, {"reversed", plant->reversed}};
+        {"weak", plant->weak}, {"reversed", plant->reversed}, {"grasp", plant->grasped}};
     for (size_t i = 0; i < sizeof switches / sizeof switches[0]; i++) {
         if (strcmp(kind, switches[i].name) == 0) {
             switches[i].of_motor[number] = true;
@@ -30,6 +30,8 @@ bool device_mishap(struct device *device, const char *kind, uint8_t number)
     }
     if (strcmp(kind, "heat") == 0) {
         plant->temperature_c[number] = 90;
+    } else if (strcmp(kind, "slack") == 0) {
+        plant->slack[number] = 0.06;
     } else if (strcmp(kind, "wedge") == 0) {
         plant->upper[number] -= 0.5;
     } else if (strcmp(kind, "no_stop") == 0) {

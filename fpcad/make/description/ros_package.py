@@ -23,8 +23,8 @@ from fpcad.make.description.xacro import (
     ros_name,
     top_xacro,
 )
+from fpcad.make.documents.stamp import Stamp
 from fpcad.make.trajectory import Trajectory
-from fpcad.store import write_whole
 
 TEMPLATES = {
     "package.xml": "package.xml.j2",
@@ -39,7 +39,7 @@ TEMPLATES = {
 
 
 def write_ros_package(
-    robot: Robot, trajectories: Mapping[str, Trajectory], meshes: Path, folder: Path
+    robot: Robot, trajectories: Mapping[str, Trajectory], meshes: Path, folder: Path, stamp: Stamp
 ) -> list[Path]:
     """Write the package into a folder of its own name.
 
@@ -48,6 +48,7 @@ def write_ros_package(
         trajectories: its trajectories, by pose.
         meshes: folder of its visual meshes, which are copied: a package stands alone.
         folder: the `hand` folder of a build.
+        stamp: goes into every file.
     """
     package, name = folder / package_name(robot), ros_name(robot)
     texts = {
@@ -62,11 +63,11 @@ def write_ros_package(
             for file, text in messages(pose, trajectory).items()
         },
     }
-    written = [write_whole(package / target, text) for target, text in texts.items()]
+    written = [stamp.write(package / target, text) for target, text in texts.items()]
     used = dict.fromkeys(mesh for link in robot.links for mesh, _ in link.body.visuals)
     for mesh in used:
         copy = package / "meshes" / "visual" / f"{mesh}.stl"
-        written.append(write_whole(copy, (meshes / f"{mesh}.stl").read_bytes()))
+        written.append(stamp.write(copy, (meshes / f"{mesh}.stl").read_bytes()))
     return written
 
 

@@ -13,21 +13,19 @@ from fpcad.make.documents.stamp import Stamp
 from fpcad.make.documents.views import cut_open, draw, finger_pieces, hand_pieces
 from fpcad.make.gates.orientation import part_orientation
 from fpcad.make.gates.postures import rest_joints
+from fpcad.make.loads.strands import PRETENSION_N
 from fpcad.make.parts.assembly import Assembly
 from fpcad.make.parts.catalogue import Tendon, lookup
 from fpcad.model.geometry import HandGeometry
 from fpcad.model.transmission import finger_transmission
 from fpcad.spec.schema import Spec
 from fpcad.spec.templates import TEMPLATES
-from fpcad.store import write_whole
 from fpcad.units import RAD_PER_DEG
 
 log = logging.getLogger(__name__)
 
 FILE, PICTURES = "assembly.md", "pictures"
 TENDON = "DYNEEMA-0.6"
-PRETENSION_N = 15.0
-"""Holds a strand on its pulley while the other one of its loop is pulled; well below what creeps."""
 KNOT = "figure-eight stopper at the anchor, double figure-eight loop at the tensioner"
 RETENSION = "after 1 h, after 10 h, then every 50 h of use: braid beds in and creeps"
 MOTORS = ("m1", "m2", "m3")
@@ -61,7 +59,7 @@ def write_guide(
         missing = str(error)
         log.warning("assembly.md has no pictures: %s", missing)
     text = guide_text(spec, assembly, stamp, missing)
-    return [*files, write_whole(folder / FILE, text)]
+    return [*files, stamp.write(folder / FILE, text)]
 
 
 def guide_text(spec: Spec, assembly: Assembly, stamp: Stamp, missing: str = "") -> str:

@@ -16,7 +16,7 @@ from fpcad.make.documents.step_files import read_step
 from fpcad.make.mesh import stl_bytes
 from fpcad.make.parts.assembly import Assembly, BoughtItem
 from fpcad.make.parts.part import Part
-from fpcad.store import read_json, write_whole
+from fpcad.store import read_json
 
 FILE, BOUGHT = "assembly.json", "bought"
 
@@ -24,17 +24,16 @@ FILE, BOUGHT = "assembly.json", "bought"
 def write_inventory(assembly: Assembly, folder: Path, stamp: Stamp) -> list[Path]:
     """Write the list, and the envelopes of what is bought, into a build's `parts` folder."""
     files = [
-        write_whole(folder / BOUGHT / f"{item.name}.stl", stamp.on_stl(stl_bytes(item.mesh)))
+        stamp.write(folder / BOUGHT / f"{item.name}.stl", stl_bytes(item.mesh))
         for item in assembly.bought
     ]
     document = {
-        "about": stamp.text,
         "unit": "mm",
         "parts": [_part(part) for part in assembly.parts],
         "bought": [_bought(item) for item in assembly.bought],
     }
     text = json.dumps(document, indent=1, allow_nan=False) + "\n"
-    return [*files, write_whole(folder / FILE, text)]
+    return [*files, stamp.write(folder / FILE, text)]
 
 
 def read_inventory(folder: Path) -> Assembly:

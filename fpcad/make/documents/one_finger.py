@@ -20,7 +20,6 @@ from fpcad.make.parts.assembly import Assembly
 from fpcad.make.parts.part import STILL_LINKS, Part
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
-from fpcad.store import write_whole
 
 MOUNT = "finger_mount"
 PALM = "palm"
@@ -50,7 +49,7 @@ def write_finger(
     alone = Assembly((*own, _mount(palm, geometry, finger)), tuple(bought))
     files = write_print_files(alone.parts, spec.print, folder, stamp)
     bill = bill_of_materials(spec, alone, 1, {})
-    return [*files, write_whole(folder / "bom.csv", bom_csv(bill, stamp))]
+    return [*files, stamp.write(folder / "bom.csv", bom_csv(bill))]
 
 
 def _mount(palm: Part, geometry: HandGeometry, finger: str) -> Part:

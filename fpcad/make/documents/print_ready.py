@@ -14,7 +14,6 @@ from fpcad.make.gates.orientation import part_orientation
 from fpcad.make.mesh import stl_bytes
 from fpcad.make.parts.part import Part
 from fpcad.spec.hardware import Print
-from fpcad.store import write_whole
 
 FOLDER = "print"
 
@@ -33,6 +32,6 @@ def write_print_files(
         mesh = on_bed(part, settings)
         item = Item(part.name, part.material, MATERIALS[part.material], mesh)
         place = folder / FOLDER / part.name
-        files.append(write_whole(place.with_suffix(".stl"), stamp.on_stl(stl_bytes(mesh))))
-        files.append(write_whole(place.with_suffix(".3mf"), threemf_bytes([item], stamp)))
+        files.append(stamp.write(place.with_suffix(".stl"), stl_bytes(mesh)))
+        files.append(stamp.write(place.with_suffix(".3mf"), threemf_bytes([item], stamp)))
     return files

@@ -1,4 +1,4 @@
-"""All gates again, on the files of a finished hand."""
+"""All gates and loads again, on the files of a finished hand."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from fpcad.make.documents.inventory import FILE, read_inventory
 from fpcad.make.gates.all_gates import PARTS, gate_groups
 from fpcad.make.gates.finding import Finding, errors
 from fpcad.make.gates.reach import SOME
+from fpcad.make.loads.check import TITLE, load_findings
+from fpcad.make.loads.hand import hand_loads
 from fpcad.make.trajectory_file import read_trajectory
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
@@ -34,3 +36,4 @@ def recheck(
         yield title, found
         if title == PARTS and errors(found):  # broken meshes have no distances to measure
             return
+    yield TITLE, load_findings(hand_loads(spec, assembly, geometry, trajectories))

@@ -1,4 +1,4 @@
-"""STEP files with the stamp of their hand: each part alone, and the whole hand put together."""
+"""STEP files: each part alone, and the whole hand put together."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from fpcad.errors import MakeError, StoreError
-from fpcad.make.documents.stamp import Stamp
 from fpcad.make.gates.bodies import link_poses
 from fpcad.make.parts.assembly import Assembly
 from fpcad.make.parts.part import STILL_LINKS
@@ -27,22 +26,22 @@ _TINY = re.compile(rb"(?<=[(,])-?\d\.\d*E-1[3-9]\b")
 """Coordinates [mm] that are zero but for the kernel's last bits, which differ from run to run."""
 
 
-def part_step(name: str, solid: Solid, stamp: Stamp) -> bytes:
+def part_step(name: str, solid: Solid) -> bytes:
     """One part as STEP [mm] in its own frame."""
-    return _steady(stamp.on_step(step_bytes(name, solid)))
+    return _steady(step_bytes(name, solid))
 
 
 def _steady(step: bytes) -> bytes:
     return _NEGATIVE_ZERO.sub(b"0.", _TINY.sub(b"0.", step))
 
 
-def assembly_step(assembly: Assembly, geometry: HandGeometry, stamp: Stamp) -> bytes:
+def assembly_step(assembly: Assembly, geometry: HandGeometry, title: str) -> bytes:
     """All printed parts of the straight hand as STEP [mm] in H, with their names.
 
     Without colours: the kernel writes those in another order each time.
     """
     cq = cadquery()
-    whole = cq.Assembly(name=stamp.name)
+    whole = cq.Assembly(name=title)
     straight = np.zeros((1, 3))
     for part in assembly.parts:
         fingers = (None,) if part.link in STILL_LINKS else geometry.fingers
@@ -61,8 +60,8 @@ def assembly_step(assembly: Assembly, geometry: HandGeometry, stamp: Stamp) -> b
             raise MakeError("the modelling kernel wrote no STEP file of the assembly")
         text = file.read_bytes()
     text = _TIMESTAMP.sub(b"'1970-01-01T00:00:00'", text)
-    text = _PRODUCT.sub(b"'" + stamp.name.encode() + b"'", text)
-    return _steady(stamp.on_step(_numbered(text)))
+    text = _PRODUCT.sub(b"'" + title.encode() + b"'", text)
+    return _steady(_numbered(text))
 
 
 def _numbered(step: bytes) -> bytes:

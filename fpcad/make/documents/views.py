@@ -19,7 +19,6 @@ from fpcad.make.parts.assembly import Assembly, BoughtItem
 from fpcad.make.parts.part import STILL_LINKS
 from fpcad.make.toolchain import pyvista
 from fpcad.model.geometry import HandGeometry
-from fpcad.store import write_whole
 
 Array = NDArray[np.float64]
 Piece = tuple[trimesh.Trimesh, str]
@@ -104,7 +103,7 @@ def draw(
         with tempfile.TemporaryDirectory() as folder:
             shot = Path(folder) / "shot.png"
             plotter.screenshot(str(shot))
-            return write_whole(png, stamp.on_png(_trimmed(shot)))
+            return stamp.write(png, _trimmed(shot))
     finally:
         plotter.close()
 

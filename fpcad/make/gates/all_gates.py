@@ -11,6 +11,7 @@ from fpcad.make.gates.joints import check_joints
 from fpcad.make.gates.meetings import check_meetings, tool_bodies
 from fpcad.make.gates.mesh import check_mesh
 from fpcad.make.gates.orientation import part_orientation
+from fpcad.make.gates.pad import check_pad
 from fpcad.make.gates.postures import hand_postures
 from fpcad.make.gates.printing import check_bed, check_overhang
 from fpcad.make.gates.reach import SOME, check_reach
@@ -57,6 +58,7 @@ def gate_groups(
     yield PARTS, lambda: [f for part in assembly.parts for f in check_part(spec, part)]
     bodies, hand = hand_bodies(assembly, geometry), spec.hand
     tools = tool_bodies(spec)
+    yield "pad", lambda: check_pad(assembly.parts, geometry)
     yield "fixed parts", lambda: check_fixed(bodies, geometry)
     yield "tubes", lambda: check_tubes(spec, geometry)
     yield "joints", lambda: check_joints(bodies, geometry, hand)

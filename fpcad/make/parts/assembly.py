@@ -21,6 +21,8 @@ from fpcad.make.parts.flange import flange_solid
 from fpcad.make.parts.flange_dimensions import FlangeDimensions
 from fpcad.make.parts.mounting import mounting
 from fpcad.make.parts.palm import MOUNT_INSETS_MM, palm_solid
+from fpcad.make.parts.palm_pad import NAME as PAD
+from fpcad.make.parts.palm_pad import pad_place, pad_solid
 from fpcad.make.parts.part import FIXED_LINK, Array, Material, Part, in_place
 from fpcad.make.parts.skin import distal_skin, proximal_skin
 from fpcad.make.parts.solids import Solid
@@ -109,6 +111,7 @@ def _plans(geometry: HandGeometry, flange: FlangeDimensions) -> list[_Plan]:
             "endoskeleton",
             (partial(flange_solid, flange, geometry),),
         ),
+        *_pad_plans(geometry, flange),
         _Plan("mcp_cross", "mcp", "endoskeleton", (mcp_cross,), T_bed=on_end),
         _Plan("input_pulley", "mcp", "endoskeleton", (input_pulley,), both_sides, axis_up),
         _Plan("idler_pulley", "mcp", "endoskeleton", (idler_pulley,)),
@@ -118,6 +121,16 @@ def _plans(geometry: HandGeometry, flange: FlangeDimensions) -> list[_Plan]:
         _Plan("distal_bone", "distal", "endoskeleton", (distal_bone,), T_bed=axis_up),
         _Plan("distal_skin", "distal", "skin", (distal_skin,), T_bed=on_end),
     ]
+
+
+def _pad_plans(geometry: HandGeometry, flange: FlangeDimensions) -> list[_Plan]:
+    """The palm's pad, where there is room for one."""
+    place = pad_place(geometry, flange)
+    return (
+        []
+        if place is None
+        else [_Plan(PAD, FIXED_LINK, "skin", (partial(pad_solid, geometry, place),))]
+    )
 
 
 def turned(axis: str, degrees: float) -> Array:

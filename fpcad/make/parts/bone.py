@@ -14,6 +14,7 @@ from fpcad.make.parts.solids import (
     Solid,
     ball,
     behind_bend,
+    beyond_flat,
     box,
     finger_core,
     mirrored_at,
@@ -28,6 +29,10 @@ NECK_HIGHS_MM = (4.75, 3.4)
 """Half height there: a roof over the channels, or else channels that are open at the top."""
 FEATHER_MM = 1.0
 """Around the tongue the shaft ends where it would get thinner than this."""
+IP_KNOT_RAD = math.radians(40.0)
+"""Angle about the IP axis, from dorsal to the front, at which both IP strands leave their groove."""
+KNOT_BEYOND_MM = 5.0
+"""From there to the pocket of their knot."""
 THIN_MM = 0.8
 """A channel that leaves less wall than this is open to the skin."""
 
@@ -35,7 +40,8 @@ THIN_MM = 0.8
 def distal_bone(d: Dimensions) -> Solid:
     """Core of the fingertip in the distal frame; its tongue holds the bearings and is the IP pulley."""
     k = d.knuckle
-    shaft = finger_core(d.distal_axis_length, d.bone).cut(behind_bend(d.ip_flex, d.clearance))
+    shaft = finger_core(d.distal_axis_length, d.bone).cut(beyond_flat(d.flat))
+    shaft = shaft.cut(behind_bend(d.ip_flex, d.clearance))
     for side in (-1, 1):
         room = rod((0, side * k.tongue_half, 0), (0, side * FAR_MM, 0), d.bone + d.clearance)
         shaft = shaft.cut(room)
@@ -47,17 +53,27 @@ def proximal_bone(d: Dimensions) -> Solid:
     """Proximal bone in the proximal frame: output discs, neck, shaft, clevis at the IP axis."""
     k, x = d.knuckle, d.proximal_length
     bend = mirrored_at(behind_bend(d.ip_flex, d.clearance), x)
-    shaft = rod((d.shaft_start, 0, 0), (x, 0, 0), d.bone).cut(bend)
+    shaft = rod((d.shaft_start, 0, 0), (x, 0, 0), d.bone).cut(beyond_flat(d.flat)).cut(bend)
     slot = k.prong_inner
-    room = d.bone + d.clearance
-    feather = math.sqrt(room**2 - (d.bone - FEATHER_MM) ** 2)
-    shaft = shaft.cut(rod((x, -slot, 0), (x, slot, 0), room))
-    shaft = shaft.cut(box((x - feather, -slot, -FAR_MM), (x + FAR_MM, slot, FAR_MM)))
+    shaft = shaft.cut(rod((x, -slot, 0), (x, slot, 0), d.bone + d.clearance))
+    shaft = shaft.cut(box((prong_start(d), -slot, -FAR_MM), (x + FAR_MM, slot, FAR_MM)))
     prongs = [_slab(d, k.prong_inner, k.prong_outer, x), _slab(d, -k.prong_outer, -slot, x)]
     bone = shaft.fuse(*prongs, _neck(d), _palmar_disc(d), _dorsal_arm(d))
     pin = rod((x, -FAR_MM, 0), (x, FAR_MM, 0), k.bearing.bore_mm / 2 + d.mcp.hold)
     cuts = [pin, *_channels(d), *_pivot_holes(d), *interlock.pockets(d, "proximal")]
-    return bone.cut(*cuts).clean()
+    return bone.cut(*cuts)  # merging faces would break the solid where flat and neck lie close
+
+
+def prong_start(d: Dimensions) -> float:
+    """Where along x of the proximal frame [mm] the clevis's slot goes through: two prongs are left."""
+    room = d.bone + d.clearance
+    return d.proximal_length - math.sqrt(room**2 - (d.bone - FEATHER_MM) ** 2)
+
+
+def ip_knot(d: Dimensions) -> tuple[float, float]:
+    """Where both IP strands end in the distal bone, (x, z) in the distal frame [mm]."""
+    radius = d.ip_pulley - d.mcp.strand / 2
+    return radius * math.sin(IP_KNOT_RAD) + KNOT_BEYOND_MM, radius * math.cos(IP_KNOT_RAD)
 
 
 def ip_tangents(d: Dimensions, side: int) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -110,11 +126,8 @@ def _ip_seats(d: Dimensions) -> list[Solid]:
 
 def _ip_anchor(d: Dimensions) -> list[Solid]:
     """Where both IP strands end: a hole from the groove's dorsal front to a knot's pocket."""
-    radius = d.ip_pulley - d.mcp.strand / 2
-    angle = math.radians(40.0)
-    x, z = radius * math.sin(angle), radius * math.cos(angle)
-    end = x + 5.0
-    hole = rod((x - 0.5, 0, z), (end, 0, z), 0.6)
+    end, z = ip_knot(d)
+    hole = rod((end - KNOT_BEYOND_MM - 0.5, 0, z), (end, 0, z), 0.6)
     return [hole, rod((end, 0, z - 0.6), (end, 0, FAR_MM), 1.4)]
 
 

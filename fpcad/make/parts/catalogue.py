@@ -64,6 +64,8 @@ class Pin(_InLengths):
     """A dowel pin."""
 
     diameter_mm: float = Field(gt=0)
+    bending_mpa: float = Field(gt=0)
+    """Bending stress [MPa] that it may bear."""
 
     def mass_g(self, length_mm: float) -> float:
         """Mass [g] of a pin of steel, its chamfers neglected."""

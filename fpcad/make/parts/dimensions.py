@@ -22,6 +22,8 @@ ROOF_MM = 7.5
 """Thickness of the palm's dorsal roof, which no link's sweep enters: it holds the palm together."""
 ANCHOR_MARGIN_RAD = math.radians(12.0)
 """Wrap that a strand keeps before its anchor, at the end of its range."""
+FLAT_MM = 0.3
+"""How far the flat is cut into a bone's round shaft on which it lies when it is printed."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,11 @@ class Dimensions:
     def shaft_start(self) -> float:
         """Distance from the root at which the proximal bone's shaft and skin begin."""
         return self.root + self.clearance
+
+    @property
+    def flat(self) -> float:
+        """-y of the flat on which a bone's shaft lies when it is printed; the skin fills what it lacks."""
+        return self.bone - FLAT_MM
 
     @property
     def widest_abduction(self) -> float:

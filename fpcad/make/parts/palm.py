@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from fpcad.errors import MakeError
 from fpcad.make.parts.catalogue import Tube, lookup
-from fpcad.make.parts.dimensions import Dimensions, roof_height
+from fpcad.make.parts.dimensions import Dimensions
 from fpcad.make.parts.flange import palm_seat
 from fpcad.make.parts.flange_dimensions import FlangeDimensions
+from fpcad.make.parts.palm_pad import pad_place, pad_recess
+from fpcad.make.parts.palm_room import below_roof, link_room
 from fpcad.make.parts.routing import EXIT_MM, TUBE, TUBE_SEAT_MM, dorsal_angle, strands
 from fpcad.make.parts.solids import (
-    FAR_MM,
     Solid,
     ball,
     box,
@@ -26,7 +27,6 @@ from fpcad.make.parts.solids import (
     union,
 )
 from fpcad.model.geometry import HandGeometry
-from fpcad.spec.base import Interval
 
 MOUNT_INSETS_MM = (0.31, 0.47, 0.23)
 """As for the bars, and no multiples of their step: mounts and bars would touch at their tops.
@@ -47,15 +47,18 @@ def palm_solid(
 ) -> Solid:
     """The palm in the hand frame H; `inset` [mm] is that of the mounts in their primitives."""
     roots = [geometry.T_palm_root[finger] for finger in geometry.fingers]
-    below_roof = box((-FAR_MM,) * 3, (FAR_MM, FAR_MM, roof_height(geometry)))
-    body = union([*_bars_with_grooves(geometry, d, below_roof), *_mounts(geometry, inset)])
+    under = below_roof(geometry)
+    body = union([*_bars_with_grooves(geometry, d, under), *_mounts(geometry, inset)])
     for root in roots:
         sweeps = placed(_near_link_room(d), root), placed(_neck_room(d), root)
-        body = body.cut(*[sweep.intersect(below_roof) for sweep in sweeps])
+        body = body.cut(*[sweep.intersect(under) for sweep in sweeps])
         body = body.cut(placed(_turning_room(d), root), placed(_axle_hole(d), root))
         body = body.cut(placed(_palmar_room(d, root), root))
         body = body.cut(*[placed(channel, root) for channel in _channels(d, root)])
     body = body.cut(*palm_seat(flange, d.clearance))
+    place = pad_place(geometry, flange)
+    if place is not None:
+        body = body.cut(*pad_recess(geometry, place, d))
     return _largest(body.clean())
 
 
@@ -90,7 +93,7 @@ def _channels(d: Dimensions, root: NDArray[np.float64]) -> list[Solid]:
     return found
 
 
-def _bars_with_grooves(geometry: HandGeometry, d: Dimensions, below_roof: Solid) -> list[Solid]:
+def _bars_with_grooves(geometry: HandGeometry, d: Dimensions, under: Solid) -> list[Solid]:
     """The palm's bars less all that the proximal links pass below the roof.
 
     What lies in any finger's root sphere stays: it ties that finger's ears to the roof.
@@ -104,22 +107,14 @@ def _bars_with_grooves(geometry: HandGeometry, d: Dimensions, below_roof: Solid)
     roots = [geometry.T_palm_root[finger] for finger in geometry.fingers]
     kept = [ball(root[:3, 3], d.root - 2 * d.clearance) for root in roots]
     for root in roots:
-        groove = placed(_link_room(d, d.mcp_abd, d.proximal_length + d.skin_outer), root)
-        bars = bars.cut(groove.intersect(below_roof).cut(*kept))
+        groove = placed(link_room(d, d.mcp_abd, d.proximal_length + d.skin_outer), root)
+        bars = bars.cut(groove.intersect(under).cut(*kept))
     return [bars]
-
-
-def _link_room(d: Dimensions, abduction: Interval, far: float) -> Solid:
-    """What the proximal link with its skin passes, up to a distance `far` from the root."""
-    half = d.skin_outer + d.clearance
-    widest = max(abs(angle) for angle in abduction)
-    near = d.shaft_start * math.cos(widest) - half * math.sin(widest)
-    return swept_link((max(near, 0.0), far), half, half, d.mcp_flex, abduction)
 
 
 def _near_link_room(d: Dimensions) -> Solid:
     """What the link passes in pure flexion close to its root: it cuts only its neighbours' ears."""
-    room = _link_room(d, (0.0, 0.0), 2 * d.root)
+    room = link_room(d, (0.0, 0.0), 2 * d.root)
     return room.cut(ball((0, 0, 0), d.root - d.clearance / 2))
 
 

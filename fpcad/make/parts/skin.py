@@ -6,13 +6,13 @@ import math
 
 from fpcad.make.parts import interlock
 from fpcad.make.parts.dimensions import Dimensions
-from fpcad.make.parts.solids import Solid, behind_bend, finger_core, mirrored_at, rod
+from fpcad.make.parts.solids import Solid, behind_bend, beyond_flat, finger_core, mirrored_at, rod
 
 
 def distal_skin(d: Dimensions) -> Solid:
     """Fingertip's skin in the distal frame: closed at the tip, cut to the IP joint's bend plane."""
     outer = finger_core(d.distal_axis_length, d.skin_outer)
-    bore = finger_core(d.distal_axis_length, d.skin_inner)
+    bore = finger_core(d.distal_axis_length, d.skin_inner).cut(_beyond_flat(d))
     cap = outer.cut(bore).cut(behind_bend(d.ip_flex, d.clearance))
     return cap.fuse(*interlock.lugs(d, "distal"))
 
@@ -20,9 +20,14 @@ def distal_skin(d: Dimensions) -> Solid:
 def proximal_skin(d: Dimensions) -> Solid:
     """Sleeve of the proximal link in its frame, from the root's sphere to the bend plane."""
     ends = (d.shaft_start, 0.0, 0.0), (d.proximal_length, 0.0, 0.0)
-    sleeve = rod(*ends, d.skin_outer).cut(rod(*ends, d.skin_inner))
+    sleeve = rod(*ends, d.skin_outer).cut(rod(*ends, d.skin_inner).cut(_beyond_flat(d)))
     sleeve = sleeve.cut(mirrored_at(behind_bend(d.ip_flex, d.clearance), d.proximal_length))
     return sleeve.fuse(*interlock.lugs(d, "proximal"))
+
+
+def _beyond_flat(d: Dimensions) -> Solid:
+    """Where the skin is thicker because the bone is flat; the gap between them is as anywhere else."""
+    return beyond_flat(d.flat + d.skin_inner - d.bone)
 
 
 def open_share(d: Dimensions) -> float:

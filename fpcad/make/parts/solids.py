@@ -104,6 +104,11 @@ def behind_bend(ip_flex: tuple[float, float], gap: float) -> Solid:
     return prism([*outline, (dorsal, FAR_MM)], FAR_MM)
 
 
+def beyond_flat(depth: float) -> Solid:
+    """All with y < -depth."""
+    return box((-FAR_MM,) * 3, (FAR_MM, -depth, FAR_MM))
+
+
 def mirrored_at(solid: Solid, x: float) -> Solid:
     """The solid seen in a mirror at the plane x = 0, then shifted along x."""
     return solid.mirror("YZ").translate(cadquery().Vector(x, 0, 0))

@@ -10,11 +10,12 @@ from fpcad.errors import SpecError
 from fpcad.run.bus import ServoBus
 from fpcad.run.drivers.dynamixel import DynamixelBus
 from fpcad.run.drivers.feetech import FeetechBus
+from fpcad.run.drivers.servo_types import ServoModel
 from fpcad.run.drivers.servos import ServoRegisterBus
 from fpcad.run.drivers.sim import SimBus
 from fpcad.run.hand_files import HandFiles
 from fpcad.run.motor_map import Array, MotorMap
-from fpcad.run.servo_driver import ServoGuards
+from fpcad.run.servo_guard import ServoGuards
 from fpcad.run.sim.tendon_hand import TendonHand
 from fpcad.spec.catalogue import motor
 
@@ -38,6 +39,17 @@ def register_bus(kind: str, hand: HandFiles, port: str) -> ServoRegisterBus:
         )
     rate = hand.spec.motors.wiring.baud_rate
     return made(hand.motors, hand.numbers, model, port, rate)
+
+
+def servo_of(hand: HandFiles) -> ServoModel:
+    """What a hand's motors are, whatever drives them: their torque for their current."""
+    wanted = hand.spec.motors.type
+    known = [model for bus in SERVOS.values() for model in bus.models.values()]
+    model = next((model for model in known if wanted.startswith(model.name)), None)
+    if model is None:
+        names = ", ".join(model.name for model in known)
+        raise SpecError(f"motors.type {wanted}: its torque is not known; known are {names}")
+    return model
 
 
 class Pace:

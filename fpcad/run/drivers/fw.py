@@ -142,7 +142,7 @@ class ControllerBus:
     def sample(self) -> Sample:
         """The latest telemetry."""
         assert self._telemetry is not None
-        return to_sample(self._telemetry, self._need_link().resends, 0, self._health)
+        return to_sample(self._telemetry, self._need_link().record.resends, 0, self._health)
 
     @property
     def _state(self) -> State:

@@ -38,7 +38,8 @@ class Mishap:
 
     Kinds: `silence` (neither hears nor speaks), `garbage` (sends noise), `reset` (restarts),
     `jam` (joint number `joint` is blocked). The firmware also knows `death` (a motor neither pulls
-    nor answers), `stuck` (its encoder stands still) and `heat` (90 degrees C).
+    nor answers), `stuck` (its encoder stands still), `heat` (90 degrees C), `grasp` (a person holds a joint
+    still) and `slack` (a motor's tendons do not pull within 0.06 rad either way).
     """
 
     kind: str

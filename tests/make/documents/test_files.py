@@ -14,15 +14,12 @@ from fpcad.errors import StoreError
 from fpcad.make.bom import write_hours
 from fpcad.make.documents.inventory import read_inventory
 from fpcad.make.documents.recheck import recheck
-from fpcad.make.documents.stamp import Stamp
 from fpcad.make.documents.threemf import Item, threemf_bytes
 from fpcad.make.gates.finding import errors
 from fpcad.make.hand import write_parts
 from fpcad.make.parts.assembly import Assembly, make_assembly
-from fpcad.spec.dump import spec_hash
-from tests.make.hands import CENTRE, CLAY, geometry_of, parts_of
+from tests.make.hands import CENTRE, CLAY, STAMP, geometry_of, parts_of
 
-STAMP = Stamp("clay", 24, spec_hash(CLAY))
 GEOMETRY = geometry_of(CENTRE)
 
 

@@ -84,7 +84,7 @@ def test_the_whole_hand_has_a_palm_and_four_fingers():
 def test_one_finger_has_its_parts_and_a_mount(finger, tmp_path):
     write_finger(CLAY, ASSEMBLY, GEOMETRY, finger, tmp_path, STAMP)
     rows = {r["item"]: r for r in csv.DictReader((tmp_path / "bom.csv").open(encoding="utf-8"))}
-    assert rows["distal_bone"]["count"] == "1" and rows["motors"]["count"] == "3"
+    assert rows["distal_bone"]["count"] == "1" and rows["motor"]["count"] == "3"
     mount = trimesh.load_mesh(tmp_path / "print" / "finger_mount.stl")
     assert mount.is_watertight and mount.body_count == 1
 

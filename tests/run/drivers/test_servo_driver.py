@@ -18,7 +18,8 @@ from fpcad.run.errors import (
 )
 from fpcad.run.quintic import Knots
 from fpcad.run.run_trajectory import follow
-from fpcad.run.servo_driver import ServoDriver, ServoGuards
+from fpcad.run.servo_driver import ServoDriver
+from fpcad.run.servo_guard import ServoGuards
 from tests.run.drivers.rigs import (
     MOTORS,
     SERVOS,
@@ -89,20 +90,30 @@ def test_a_host_that_was_stalled_goes_on_without_a_jump():
     assert steps < 0.03 * np.radians(90)
 
 
+def told_ends(samples):
+    """States and causes of a run's table, each once, in their order."""
+    return list(dict.fromkeys((sample.state, sample.cause) for sample in samples))
+
+
 def test_one_request_holds_and_two_let_go():
-    for wanted, error, on in ((1, HeldByUser, True), (2, StoppedByUser, False)):
-        count, seen = [0], []
+    for wanted, error, on, state in (
+        (1, HeldByUser, True, "HOLD"),
+        (2, StoppedByUser, False, "ESTOP"),
+    ):
+        count, seen, samples = [0], [], []
         bus, driver = simulated(Time())
         driver.ready(clear=False)
 
-        def at_half(sample, count=count, seen=seen, wanted=wanted):
+        def at_half(sample, count=count, seen=seen, samples=samples, wanted=wanted):
+            samples.append(sample)
             seen.append(sample.command_rad)
             count[0] = wanted * (sample.path_s > 1.0)
 
         with pytest.raises(error, match=r"at 1\.\d+ s of 2\.00 s"):
             played(driver, swing(), at_half, lambda count=count: count[0])
         assert bus.read_state().torque_on is on
-        acceleration = np.abs(np.diff(seen, 2, axis=0)).max() / 0.01**2
+        assert told_ends(samples) == [("RUNNING", "NONE"), (state, "HOST")]
+        acceleration = np.abs(np.diff(seen[:-1], 2, axis=0)).max() / 0.01**2
         assert acceleration <= hand_limits().acceleration_rad_s2[0] * 1.1
 
 
@@ -141,8 +152,10 @@ def test_a_joint_that_is_held_back_stops_all():
 def test_a_current_beyond_the_bound_stops_all():
     _, driver = simulated(Time(), current_ma=20)
     driver.ready(clear=False)
+    samples = []
     with pytest.raises(ServoFault, match=r"_m[123] draws \d+ mA at"):
-        played(driver, swing())
+        played(driver, swing(), samples.append)
+    assert told_ends(samples) == [("RUNNING", "NONE"), ("FAULT", "CURRENT")]
 
 
 @pytest.fixture(params=SERVOS)
@@ -207,9 +220,10 @@ def test_flipped_bits_cost_single_answers_and_nothing_else(driver, bench):
 
 def test_a_dead_servo_is_named_and_the_others_come_to_rest(driver, bench):
     driver.ready(clear=False)
-    died = []
+    died, samples = [], []
 
     def die(sample):
+        samples.append(sample)
         if sample.path_s > 0.3 and not died:
             died.append(time.monotonic())
             bench.faults.dead.add(5)
@@ -217,6 +231,7 @@ def test_a_dead_servo_is_named_and_the_others_come_to_rest(driver, bench):
     with pytest.raises(ServoSilent, match=r"index_m2 \(id 5 on .*\) does not answer.*hold\.$"):
         played(driver, swing(), die)
     assert time.monotonic() - died[0] < 0.5
+    assert told_ends(samples)[-1] == ("FAULT", "MOTOR_LOST")
     bench.pass_time()
     before = bench.hand.joint_rad
     time.sleep(0.05)
@@ -227,17 +242,23 @@ def test_a_dead_servo_is_named_and_the_others_come_to_rest(driver, bench):
 def test_an_unplugged_adapter_ends_the_run_and_says_what_the_servos_do(driver, bench):
     driver.ready(clear=False)
 
+    samples = []
+
     def unplug(sample):
+        samples.append(sample)
         if sample.path_s > 0.2:
             bench.unplug()
 
     with pytest.raises(LinkLost, match=r"the line broke.*Its servos") as caught:
         played(driver, swing(), unplug)
     assert str(caught.value).endswith(driver.bus.without_host)
+    assert told_ends(samples)[-1] == ("FAULT", "LINK")
 
 
 def test_a_hot_servo_stops_all(driver, bench):
     driver.ready(clear=False)
     bench.faults.temperature_c = 81
+    samples = []
     with pytest.raises(ServoFault, match="is at 81 degrees C"):
-        played(driver, swing())
+        played(driver, swing(), samples.append)
+    assert told_ends(samples)[-1] == ("FAULT", "TEMPERATURE")

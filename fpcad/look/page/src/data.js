@@ -1,20 +1,15 @@
 // The run's document and the blocks of numbers that it refers to.
 
-import { unzlibSync } from "three/addons/libs/fflate.module.js";
-
 const TYPES = { f4: Float32Array, i2: Int16Array, i4: Int32Array, u1: Uint8Array };
 const MISSING = -32768;
 const OPENING = "opening", LATER = ["hands", "paths"]; // as in fpcad/look/document.py
 const PATIENCE_MS = 12; // decoding lets the reader's clicks in so often
 
-/**
- * Reads the document and its first block, of what the page opens with; see fpcad/look/pack.py. In one
- * go: whoever waits for the browser's own inflater here waits for megabytes of the other blocks too.
- */
+/** Reads the document and its first block, of what the page opens with: a plain one, see fpcad/look/pack.py. */
 export function readRun() {
   const run = JSON.parse(document.getElementById("run").textContent);
-  const bytes = unzlibSync(bytesOf(textOf(OPENING)));
-  for (const [place, key] of referencesTo(run, OPENING)) place[key] = decode(place[key], bytes);
+  const bytes = bytesOf(textOf(OPENING));
+  for (const [place, key] of referencesTo(run, OPENING)) place[key] = decode(place[key], viewOf(place[key], bytes));
   return Object.assign(run, { isWhole: false });
 }
 
@@ -38,7 +33,7 @@ export async function unpack(told, name, base64) {
   const bytes = await inflate(base64);
   let last = performance.now();
   for (const [place, key] of referencesTo(told, name)) {
-    place[key] = decode(place[key], bytes);
+    place[key] = decode(place[key], joinPlanes(place[key], bytes));
     if (performance.now() - last > PATIENCE_MS) {
       await new Promise((done) => setTimeout(done));
       last = performance.now();
@@ -70,10 +65,13 @@ function referencesTo(node, name, found = []) {
   return found;
 }
 
-function decode(reference, block) {
-  const steps = joinPlanes(reference, block);
+function decode(reference, steps) {
   const values = "scale" in reference ? dequantize(reference, steps) : steps;
   return Object.assign(values, { shape: reference.shape });
+}
+
+function viewOf({ at, n, type }, block) {
+  return new TYPES[type](block.buffer, block.byteOffset + at, n);
 }
 
 function joinPlanes({ at, n, type }, block) {

@@ -60,6 +60,3 @@ export function drawAllNow() {
 }
 
 const idle = () => new Promise((done) => (window.requestIdleCallback ? requestIdleCallback(done, { timeout: 300 }) : setTimeout(done, 30)));
-
-/** When the browser has shown what was drawn. */
-export const shown = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done)));

@@ -71,6 +71,7 @@ export class Lines {
   }
 
   #click(event) {
+    if (!this.width) return; // not drawn yet
     const [px, py] = pointer(event, this.svg.node());
     const x = this.x.invert(px);
     const at = nearestIndex(this.view.x, x);

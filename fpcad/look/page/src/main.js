@@ -1,9 +1,8 @@
 // The page: reads the run, draws every figure, ties them together by one selection.
 
-import { extent } from "d3-array";
 import { Actions } from "./actions.js";
 import { Compare } from "./compare.js";
-import { drawUnseen, make, shown } from "./dom.js";
+import { drawUnseen, make } from "./dom.js";
 import { Lines } from "./lines.js";
 import { List } from "./list.js";
 import { drawLogs } from "./logs.js";
@@ -11,25 +10,34 @@ import { Numbers } from "./numbers.js";
 import { Parallel } from "./parallel.js";
 import { Player } from "./player.js";
 import { Scatter } from "./scatter.js";
+import { shown } from "./shown.js";
 import { State } from "./state.js";
 import { onThemeChange } from "./theme.js";
 import { readRest, readRun } from "./data.js";
 
 const at = (id) => document.getElementById(id);
-const column = (points, k) => Float32Array.from({ length: points.length / 2 }, (_, i) => points[2 * i + k]);
 
-const view3d = new Promise((arrived) => (window.fpcad3d = arrived)); // called by view3d.js
+/** Runs view3d.js, which is text until then: to compile it takes longer than all that the page opens with. */
+function load3d() {
+  let arrived;
+  window.fpcad3d = (exported) => (arrived = exported);
+  const script = make("script");
+  script.textContent = at("script-3d").textContent;
+  document.head.append(script);
+  return arrived;
+}
 
 async function start() {
+  await window.fpcadPainted; // from first.js: the summary, text of the page, comes before all that is read
   const run = readRun();
   const state = new State(run);
   const figures = run.candidates.count ? drawFigures(run, state) : [];
   new Numbers(at("numbers"), state);
   bindControls(run, state);
-  performance.mark("fpcad:answers"); // figures in sight are drawn next, clicks are answered from now on
+  performance.mark("fpcad:answers"); // figures are drawn as they come into sight
   await shown();
   const whole = readRest(run);
-  const { Stage, GLTFExporter } = await view3d;
+  const { Stage, GLTFExporter } = load3d();
   const open = (host) => openStage(host, run, Stage);
   const stage = run.candidates.count ? open(at("stage")) : null;
   const player = run.candidates.count ? new Player(at("player"), state, stage) : null;
@@ -128,9 +136,21 @@ function parallel(run, state) {
   return new Parallel(at("parallel"), state, [...parameters, ...scores], metrics);
 }
 
-/** Least and greatest number, apart from each other. */
+/** One coordinate of points in a plane; as a loop, since the page waits for it. */
+function column(points, k) {
+  const values = new Float32Array(points.length / 2);
+  for (let i = 0; i < values.length; i++) values[i] = points[2 * i + k];
+  return values;
+}
+
+/** Least and greatest number, apart from each other; NaN is passed over. */
 function span(values) {
-  const [low = 0, high = 0] = extent(values);
+  let [low, high] = [Infinity, -Infinity];
+  for (let i = 0; i < values.length; i++) {
+    if (values[i] < low) low = values[i];
+    if (values[i] > high) high = values[i];
+  }
+  if (low > high) low = high = 0;
   return low < high ? [low, high] : [low - 1, low + 1];
 }
 

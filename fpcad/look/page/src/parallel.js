@@ -163,7 +163,7 @@ export class Parallel {
   }
 
   #click(event) {
-    if (event.target.closest?.(".brush")) return;
+    if (!this.width || event.target.closest?.(".brush")) return;
     const box = this.box.getBoundingClientRect();
     const x = event.clientX - box.left, y = event.clientY - box.top;
     const right = Math.min(Math.max(this.columns.findIndex((c) => c.x >= x), 1), this.columns.length - 1);

@@ -157,6 +157,7 @@ export class Scatter {
   }
 
   #click(event) {
+    if (!this.width) return; // not drawn yet
     const box = this.box.getBoundingClientRect();
     const [row, distance] = this.#nearest(event.clientX - box.left, event.clientY - box.top, () => true);
     if (distance <= NEAR) this.state.select(row);
@@ -164,7 +165,7 @@ export class Scatter {
 
   #key(event) {
     const direction = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-    if (!direction || this.state.selected === null) return;
+    if (!direction || !this.width || this.state.selected === null) return;
     event.preventDefault();
     const [x0, y0] = this.place(this.state.selected);
     const ahead = (x, y) => {

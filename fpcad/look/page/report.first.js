@@ -1,0 +1,1 @@
+(()=>{var o=()=>new Promise(e=>requestAnimationFrame(()=>setTimeout(e)));window.fpcadPainted=o();})();

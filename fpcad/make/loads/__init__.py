@@ -1,0 +1,1 @@
+"""What motors, tendons, bearings, pins and bones of a finished hand must bear. docs/loads.md."""
