@@ -25,7 +25,7 @@ def test_bill_counts_what_is_printed_and_bought(clay_hand):
     with (clay_hand / "parts" / "bom.csv").open(newline="") as stream:
         rows = {row["item"]: row for row in csv.DictReader(stream)}
     assert rows["distal_skin"]["count"] == "4" and rows["palm"]["count"] == "1"
-    assert rows["motor"]["count"] == "12" and rows["motors"]["size"] == CLAY.motors.type
+    assert rows["motor"]["count"] == "12" and rows["motor"]["size"] == CLAY.motors.type
     for row in rows.values():
         if row["kind"] == "printed":
             assert (clay_hand / "parts" / row["file"]).is_file()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from fpcad.errors import ToolchainError
+from fpcad.make.documents.box_views import box_at_a_tensioner, box_pieces, foot_pieces
+from fpcad.make.documents.guide_steps import steps
 from fpcad.make.documents.stamp import Stamp
 from fpcad.make.documents.views import cut_open, draw, finger_pieces, hand_pieces
 from fpcad.make.gates.orientation import part_orientation
@@ -37,8 +39,18 @@ LOOPS = {
 VIEWS = {
     "finger_apart": ("A finger taken apart", (0.3, -1.0, 0.5)),
     "finger_cut": ("A finger cut open at its middle plane", (0.0, -1.0, 1e-4)),
+    "foot_cut": ("The flange's foot on the palm, cut open along the palm's bar", (0.0, -1.0, 1e-4)),
+    "box_apart": ("The motors' box taken apart", (0.8, -1.0, 0.15)),
+    "box_cut": (
+        "The motors' box cut open at an extensor: tensioner, strand's way, spool",
+        (0.0, -1.0, 1e-4),
+    ),
     "hand": ("The whole hand at rest", (0.55, -1.0, 0.3)),
+    "hand_behind": ("The same from its other side", (-1.0, 0.7, 0.15)),
 }
+
+NEEDED = {"foot_cut": "flange", "box_apart": "motor_box", "box_cut": "tension_carriage"}
+"""The part without which a picture shows nothing."""
 
 
 def write_guide(
@@ -49,17 +61,27 @@ def write_guide(
     pieces = {
         "finger_apart": lambda: finger_pieces(assembly, geometry, apart=True),
         "finger_cut": lambda: cut_open(finger_pieces(assembly, geometry, apart=False)),
+        "foot_cut": lambda: cut_open(foot_pieces(assembly)),
+        "box_apart": lambda: box_pieces(assembly, apart=True),
+        "box_cut": lambda: cut_open(box_at_a_tensioner(assembly)),
         "hand": lambda: hand_pieces(assembly, geometry, rest_joints(spec.hand, geometry)),
+        "hand_behind": lambda: hand_pieces(assembly, geometry, rest_joints(spec.hand, geometry)),
     }
     try:
-        for name, (_, direction) in VIEWS.items():
-            file = folder / PICTURES / f"{name}.png"
+        for name in views_of(assembly):
+            direction, file = VIEWS[name][1], folder / PICTURES / f"{name}.png"
             files.append(draw(pieces[name](), file, direction, stamp))
     except ToolchainError as error:
         missing = str(error)
         log.warning("assembly.md has no pictures: %s", missing)
     text = guide_text(spec, assembly, stamp, missing)
     return [*files, stamp.write(folder / FILE, text)]
+
+
+def views_of(assembly: Assembly) -> list[str]:
+    """Which pictures there are: those of parts that an assembly lacks are left out."""
+    made = {part.name for part in assembly.parts}
+    return [name for name in VIEWS if NEEDED.get(name, "palm") in made]
 
 
 def guide_text(spec: Spec, assembly: Assembly, stamp: Stamp, missing: str = "") -> str:
@@ -70,13 +92,14 @@ def guide_text(spec: Spec, assembly: Assembly, stamp: Stamp, missing: str = "") 
     else:
         lines += [
             line
-            for name, (title, _) in VIEWS.items()
+            for name in views_of(assembly)
+            for title in (VIEWS[name][0],)
             for line in (f"![{title}]({PICTURES}/{name}.png)", "", f"{title}.", "")
         ]
     lines += ["## Print", "", *_print_table(spec, assembly), ""]
     lines += ["## Buy", "", *_bought_table(assembly), ""]
     lines += ["## Tendons", "", *_tendon_table(spec), ""]
-    lines += ["## Steps", "", *_steps(spec, assembly), ""]
+    lines += ["## Steps", "", *steps(spec, assembly, PRETENSION_N), ""]
     return "\n".join(lines)
 
 
@@ -126,27 +149,3 @@ def strand_travel(spec: Spec) -> list[tuple[float, float]]:
     turns = np.abs(A) @ spans
     radius = spec.motors.transmission.spool_radius_mm
     return [(float(turn), float(turn * RAD_PER_DEG * radius)) for turn in turns]
-
-
-def _steps(spec: Spec, assembly: Assembly) -> Iterator[str]:
-    bought = {item.kind for item in assembly.bought}
-    steps: Sequence[tuple[bool, str]] = (
-        (True, "Print `fit_coupon` and try the pins in its holes. If the middle hole is too tight or too loose, "
-               f"change `print.clearance_mm` (now {spec.print.clearance_mm:g}) by the step of the hole that fits, and export again."),
-        (True, "Make one finger first: `fpcad export NAME --finger index` writes its parts alone."),
-        ("inserts" in bought, "Melt the heat-set inserts into palm and flange, flush, at 220 C, and let them cool."),
-        ("bearings" in bought, "Press the bearings into the bones, on their outer rings."),
-        (True, "IP joint: put the distal bone's tongue into the proximal bone's clevis and push the pin through."),
-        (True, "MCP joint: join the proximal bone to the cross with its two abduction pins, then the cross to the palm "
-               "with the flexion pin, from the side."),
-        (True, "Move every joint by hand through its range. Nothing may rub; `checks.csv` tells the clearances."),
-        (True, "Lead the strands: first the IP loop across the MCP joint, then the two loops of the differential. "
-               "Knot them at the anchors as the table says."),
-        (True, "Fix the motors, turn their spools to the middle, and put the loops on."),
-        (True, f"Tighten each loop to {PRETENSION_N:g} N, both strands alike, the finger straight."),
-        (True, "Pull the skins over the bones, warm: a hair dryer makes TPE wide. The bend planes face the palm."),
-        (True, "Wire the motors, with fuse and switch in the + lead. Set their ids one by one."),
-        (True, "Home the hand before the first trajectory, and keep a finger on the switch."),
-    )  # fmt: skip
-    wanted = (text for needed, text in steps if needed)
-    yield from (f"{number}. {text}" for number, text in enumerate(wanted, start=1))

@@ -44,7 +44,7 @@ def finger_pieces(assembly: Assembly, geometry: HandGeometry, apart: bool) -> li
             if apart:
                 mesh.apply_translation((start - mesh.bounds[0, 0], 0, 0))
                 start = float(mesh.bounds[1, 0]) + GAP_MM
-            pieces.append((mesh, _colour(item)))
+            pieces.append((mesh, piece_colour(item)))
     return pieces
 
 
@@ -61,7 +61,7 @@ def hand_pieces(assembly: Assembly, geometry: HandGeometry, joints: Array) -> li
         for pose in poses:
             for place in item.places:
                 mesh = item.mesh.copy().apply_transform(pose @ place)
-                pieces.append((mesh, _colour(item)))
+                pieces.append((mesh, piece_colour(item)))
     return pieces
 
 
@@ -129,5 +129,6 @@ def _along(geometry: HandGeometry, link: str) -> Array:
     return pose
 
 
-def _colour(item: object) -> str:
+def piece_colour(item: object) -> str:
+    """The colour of what is bought, or of the material."""
     return BOUGHT_COLOUR if isinstance(item, BoughtItem) else COLOURS[getattr(item, "material", "")]
