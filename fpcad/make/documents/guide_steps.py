@@ -25,11 +25,12 @@ def steps(spec: Spec, assembly: Assembly, pretension_n: float) -> Iterator[str]:
         (True, "Move every joint by hand through its range. Nothing may rub; `checks.csv` tells the clearances."),
         ("flange" in made, "Screw the flange's foot on the palm with its two M3 screws. It stands on the flat, not on the sides."),
         ("motor_box" in made, "Slide each carriage with its screw into its room in the box, all the way back; they must slide by hand."),
+        ("motor_box" in made, "Push the four M6 nuts into the box's front from inside: motors will cover them."),
         ("motor_box" in made, "Set the motors' ids one by one, and write each on its motor: `motor_places` in `hand/transmission.yaml` "
                               "tells which sits where. Put them in, horns outward, and lead the cables through the lane between the rows."),
         ("spool" in made, "Turn each motor to the middle of its travel and screw a spool on its horn, knots' pockets as drawn."),
         ("box_back" in made, "Close the box with its back plate; its M6 screws for the robot go in before."),
-        ("motor_box" in made and on_flange, "Put the M6 nuts into the box's front, and bolt the flange to it with four M6 screws, heads towards the hand."),
+        ("motor_box" in made and on_flange, "Bolt the flange to the box's front with four M6 screws, heads towards the hand."),
         ("motor_box" in made and not on_flange, "Fix the box where it shall stand, and the flange to the robot."),
         ("tubes" in bought, "Cut the tubes as `bom.csv` tells, square and without burrs, and push each into palm and port, by name. "
                             "Those that cross go around each other; none may be pulled tight."),
