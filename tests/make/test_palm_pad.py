@@ -12,8 +12,8 @@ from fpcad.make.gates.pad import bar_plan, check_pad, skin_share
 from fpcad.make.gates.wall import check_walls
 from fpcad.make.mesh import manifold_of
 from fpcad.make.parts.dimensions import finger_dimensions
-from fpcad.make.parts.flange_dimensions import flange_dimensions
-from fpcad.make.parts.palm_pad import HEAD_MM, NAME, PLUG_MM, pad_place
+from fpcad.make.parts.mounting import flange_and_box
+from fpcad.make.parts.palm_pad import HEAD_MM, NAME, PLUG_MM, PadPlace, pad_place
 from tests.make.hands import CENTRE, CLAY, CORNERS, geometry_of
 
 GEOMETRY = geometry_of(CENTRE)
@@ -25,10 +25,15 @@ def pad(clay_parts):
     return clay_parts[NAME]
 
 
-def place_of(values, spec=CLAY):
-    geometry = geometry_of(values, spec)
-    d = finger_dimensions(spec, geometry)
-    return pad_place(geometry, flange_dimensions(spec.mount, geometry, d))
+def flange_of(geometry):
+    return flange_and_box(CLAY, geometry, finger_dimensions(CLAY, geometry))[0]
+
+
+def place_of(values) -> PadPlace:
+    geometry = geometry_of(values)
+    place = pad_place(geometry, flange_of(geometry))
+    assert place is not None
+    return place
 
 
 def test_the_pad_lies_within_the_primitive_that_it_covers(pad):
@@ -63,8 +68,7 @@ def test_plugs_and_inserts_keep_apart(values):
 
 def test_a_palm_without_room_has_no_pad():
     short = replace(GEOMETRY, palm=tuple(s for s in GEOMETRY.palm if s.finger))
-    flange = flange_dimensions(CLAY.mount, GEOMETRY, finger_dimensions(CLAY, GEOMETRY))
-    assert pad_place(short, flange) is None
+    assert pad_place(short, flange_of(GEOMETRY)) is None
 
 
 def test_the_share_that_skin_covers_is_told(clay_parts):
