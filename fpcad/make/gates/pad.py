@@ -56,10 +56,11 @@ def skin_share(parts: Sequence[Part], points: Array) -> float:
     for part in parts:
         if part.link != FIXED_LINK:
             continue
-        low = float(part.mesh.bounds[0, 2]) - 1.0
+        mesh = part.on_link
+        low = float(mesh.bounds[0, 2]) - 1.0
         starts = np.column_stack([points, np.full(len(points), low)])
         up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-        hits, ray, _ = part.mesh.ray.intersects_location(starts, up, multiple_hits=False)
+        hits, ray, _ = mesh.ray.intersects_location(starts, up, multiple_hits=False)
         height = nearest[part.material]
         height[ray] = np.minimum(height[ray], hits[:, 2])
     seen = np.isfinite(nearest["skin"]) | np.isfinite(nearest["endoskeleton"])

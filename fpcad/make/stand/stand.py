@@ -172,7 +172,7 @@ def stand_rows(spec: Spec) -> list[BomRow]:
     """What is bought for the stand."""
     flange = lookup("flanges", Flange, spec.mount.flange)
     screw = lookup("screws", Screw, flange.screw)
-    size = f"{screw.size}, {flange.disc_mm + WALL_MM + 10:g} mm or more, with nut where the base has none"
+    size = f"{screw.size} x {flange.disc_mm + WALL_MM + 10:g} mm or more (nuts where the base has none)"
     row = BomRow(
         "stand_screw",
         "bought",
