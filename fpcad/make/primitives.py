@@ -58,11 +58,24 @@ def capsule_collision(link: ET.Element, name: str, start: Array, end: Array, rad
     if length == 0.0:
         _sphere(link, name, start, radius)
         return
-    middle = pose_along((start + end) / 2, (end - start) / length)
-    cylinder = _collision(link, f"{name}_cylinder", middle)
-    ET.SubElement(cylinder, "cylinder", radius=repr(float(radius)), length=repr(length))
+    cylinder_collision(link, f"{name}_cylinder", start, end, radius)
     _sphere(link, f"{name}_start", start, radius)
     _sphere(link, f"{name}_end", end, radius)
+
+
+def cylinder_collision(
+    link: ET.Element, name: str, start: Array, end: Array, radius: float
+) -> None:
+    """A collision element with flat ends at two points."""
+    length = float(np.linalg.norm(end - start))
+    middle = pose_along((start + end) / 2, (end - start) / length)
+    cylinder = _collision(link, name, middle)
+    ET.SubElement(cylinder, "cylinder", radius=repr(float(radius)), length=repr(length))
+
+
+def box_collision(link: ET.Element, name: str, pose: Array, size: Array) -> None:
+    """A box of a size (3,) about its middle, which stands at a pose (4, 4)."""
+    ET.SubElement(_collision(link, name, pose), "box", size=vector_text(size))
 
 
 def _sphere(link: ET.Element, name: str, centre: Array, radius: float) -> None:

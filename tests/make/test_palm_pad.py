@@ -13,7 +13,7 @@ from fpcad.make.gates.wall import check_walls
 from fpcad.make.mesh import manifold_of
 from fpcad.make.parts.dimensions import finger_dimensions
 from fpcad.make.parts.mounting import flange_and_box
-from fpcad.make.parts.palm_pad import HEAD_MM, NAME, PLUG_MM, PadPlace, pad_place
+from fpcad.make.parts.palm_pad import HEAD_MM, NAME, PLUG_MM, pad_place
 from tests.make.hands import CENTRE, CLAY, CORNERS, geometry_of
 
 GEOMETRY = geometry_of(CENTRE)
@@ -25,13 +25,15 @@ def pad(clay_parts):
     return clay_parts[NAME]
 
 
-def flange_of(geometry):
-    return flange_and_box(CLAY, geometry, finger_dimensions(CLAY, geometry))[0]
+def place_in(geometry, flanged):
+    """The pad's place in a hand, with the flange of another where that hand has no bar for one."""
+    flange, _ = flange_and_box(CLAY, flanged, finger_dimensions(CLAY, flanged))
+    return pad_place(geometry, flange)
 
 
-def place_of(values) -> PadPlace:
+def place_of(values):
     geometry = geometry_of(values)
-    place = pad_place(geometry, flange_of(geometry))
+    place = place_in(geometry, geometry)
     assert place is not None
     return place
 
@@ -68,7 +70,7 @@ def test_plugs_and_inserts_keep_apart(values):
 
 def test_a_palm_without_room_has_no_pad():
     short = replace(GEOMETRY, palm=tuple(s for s in GEOMETRY.palm if s.finger))
-    assert pad_place(short, flange_of(GEOMETRY)) is None
+    assert place_in(short, GEOMETRY) is None
 
 
 def test_the_share_that_skin_covers_is_told(clay_parts):

@@ -21,6 +21,7 @@ from fpcad.make.description.robot import (
     motor_command,
     motor_range,
 )
+from fpcad.make.description.shapes import Capsule, Cuboid, Shape
 from fpcad.make.inertia import Inertia
 from fpcad.make.primitives import vector_text
 
@@ -127,16 +128,26 @@ def _body(parent: ET.Element, link: Link, joint: Joint | None = None) -> ET.Elem
         ET.SubElement(body, "joint", name=joint.name, type="hinge", axis=axis, range=limits)
     for mesh, material in link.body.visuals:
         ET.SubElement(body, "geom", {"class": "visual"}, mesh=mesh, material=material)
-    for shape in link.capsules:
-        geom = ET.SubElement(body, "geom", {"class": "collision"}, name=shape.name)
-        if np.array_equal(shape.start, shape.end):
-            geom.set("type", "sphere")
-            geom.set("pos", vector_text(shape.start))
-        else:
-            geom.set("type", "capsule")
-            geom.set("fromto", vector_text((*shape.start, *shape.end)))
-        geom.set("size", number(shape.radius))
+    for shape in link.shapes:
+        _collision(body, shape)
     return body
+
+
+def _collision(body: ET.Element, shape: Shape) -> None:
+    geom = ET.SubElement(body, "geom", {"class": "collision"}, name=shape.name)
+    if isinstance(shape, Cuboid):
+        geom.set("type", "box")
+        geom.set("pos", vector_text(shape.pose[:3, 3]))
+        geom.set("quat", vector_text(quaternion(shape.pose[:3, :3])))
+        geom.set("size", vector_text(shape.size / 2))
+        return
+    if np.array_equal(shape.start, shape.end):
+        geom.set("type", "sphere")
+        geom.set("pos", vector_text(shape.start))
+    else:
+        geom.set("type", "capsule" if isinstance(shape, Capsule) else "cylinder")
+        geom.set("fromto", vector_text((*shape.start, *shape.end)))
+    geom.set("size", number(shape.radius))
 
 
 def _inertial(body: ET.Element, inertia: Inertia) -> None:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fpcad.make.description.mount import mount_shapes
+from fpcad.make.description.shapes import Capsule, Shape
 from fpcad.make.inertia import Inertia
 from fpcad.make.preload.stiffness import hand_stiffness
 from fpcad.make.primitives import pose_along
@@ -53,22 +55,12 @@ class LinkBody:
 
 
 @dataclass(frozen=True)
-class Capsule:
-    """A collision shape in its link's frame [m]; a sphere has equal ends."""
-
-    name: str
-    start: Array  # (3,)
-    end: Array  # (3,)
-    radius: float
-
-
-@dataclass(frozen=True)
 class Link:
     """A rigid body with what is seen and what is touched of it."""
 
     name: str
     body: LinkBody
-    capsules: tuple[Capsule, ...] = ()
+    shapes: tuple[Shape, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -161,7 +153,7 @@ def describe(
     """The hand of a geometry; `bodies` by `palm`, `mcp`, `proximal`, `distal`, trajectories by pose."""
     names, row = TEMPLATES[spec.hand.template], motor(spec.motors.type)
     A = hand_transmission(spec.motors.transmission, len(names.fingers))
-    links, joints = [_palm(geometry, bodies["palm"])], []
+    links, joints = [_palm(spec, geometry, bodies["palm"])], []
     for finger in geometry.fingers:
         links += _finger_links(geometry, finger, bodies)
         joints += _finger_joints(spec, geometry, finger)
@@ -197,12 +189,12 @@ def motor_range(robot: Robot) -> tuple[Array, Array]:
     )
 
 
-def _palm(geometry: HandGeometry, body: LinkBody) -> Link:
+def _palm(spec: Spec, geometry: HandGeometry, body: LinkBody) -> Link:
     shapes = tuple(
         Capsule(s.name, s.start_mm * M_PER_MM, s.end_mm * M_PER_MM, s.radius_mm * M_PER_MM)
         for s in geometry.palm
     )
-    return Link(BASE_LINK, body, shapes)
+    return Link(BASE_LINK, body, (*shapes, *mount_shapes(spec, geometry)))
 
 
 def _finger_links(

@@ -38,6 +38,6 @@ def disabled_pairs(robot: Robot) -> list[tuple[str, str, str]]:
     pairs += [
         (a.name, b.name, "Never")
         for a, b in itertools.combinations(robot.links, 2)
-        if not (a.capsules and b.capsules) and frozenset((a.name, b.name)) not in known
+        if not (a.shapes and b.shapes) and frozenset((a.name, b.name)) not in known
     ]
     return pairs

@@ -6,9 +6,22 @@ import xml.etree.ElementTree as ET
 from collections.abc import Callable
 
 from fpcad.make.description.markup import document, number
-from fpcad.make.description.robot import COLOURS, Joint, Link, Robot
+from fpcad.make.description.robot import (
+    COLOURS,
+    Joint,
+    Link,
+    Robot,
+)
+from fpcad.make.description.shapes import Capsule, Cylinder, Shape
 from fpcad.make.inertia import Inertia
-from fpcad.make.primitives import capsule_collision, origin_element, pose_along, vector_text
+from fpcad.make.primitives import (
+    box_collision,
+    capsule_collision,
+    cylinder_collision,
+    origin_element,
+    pose_along,
+    vector_text,
+)
 
 SOFT_LIMIT_RATE = 100.0
 """Speed [rad/s] that a controller may have for each rad to a soft limit: paths brake late."""
@@ -50,8 +63,17 @@ def _link(parent: ET.Element, link: Link, mesh_file: MeshFile, prefix: str) -> N
         geometry = ET.SubElement(visual, "geometry")
         ET.SubElement(geometry, "mesh", filename=mesh_file(mesh))
         ET.SubElement(visual, "material", name=prefix + material)
-    for shape in link.capsules:
-        capsule_collision(element, prefix + shape.name, shape.start, shape.end, shape.radius)
+    for shape in link.shapes:
+        _collision(element, shape, prefix + shape.name)
+
+
+def _collision(link: ET.Element, shape: Shape, name: str) -> None:
+    if isinstance(shape, Capsule):
+        capsule_collision(link, name, shape.start, shape.end, shape.radius)
+    elif isinstance(shape, Cylinder):
+        cylinder_collision(link, name, shape.start, shape.end, shape.radius)
+    else:
+        box_collision(link, name, shape.pose, shape.size)
 
 
 def _joint(parent: ET.Element, joint: Joint, prefix: str) -> None:

@@ -149,6 +149,7 @@ def _capsules(vertices: Array) -> Iterator[tuple[Array, float]]:
     for origin, direction in ((np.zeros(3), np.eye(3)[0]), *((middle, own[i]) for i in range(3))):
         along = (vertices - origin) @ direction
         radial = np.linalg.norm(vertices - origin - np.outer(along, direction), axis=1)
+        # max with 0: the square of a number and of an array may differ in the last bit
         reach = np.sqrt(
             np.maximum(radial.max() ** 2 - radial**2, 0.0)
         )  # how far the balls at the ends may cover

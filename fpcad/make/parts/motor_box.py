@@ -10,12 +10,12 @@ import numpy as np
 import trimesh
 
 from fpcad.make.mesh import mesh_of
+from fpcad.make.parts.box_back import BACK_SCREW, back_screw_length, back_solid, boss_places
 from fpcad.make.parts.catalogue import Insert, Nut, Screw, lookup
 from fpcad.make.parts.motor_box_dimensions import (
-    BACK_DISC_MM,
     BACK_MM,
     BOSS_MM,
-    FLANGE_DISC_MM,
+    EASY_MM,
     FLANGE_SCREW,
     LIP_MM,
     NUT_WEB_MM,
@@ -23,14 +23,14 @@ from fpcad.make.parts.motor_box_dimensions import (
     PILOT_MM,
     PLATE_MM,
     SEAT_DEPTH_MM,
-    SLOT_MM,
     TOWER_MM,
     MotorBox,
     MotorSlot,
     motor_box_dimensions,
 )
+from fpcad.make.parts.motor_walls import in_row, separators, web_half
 from fpcad.make.parts.part import FIXED_LINK, Array, Part
-from fpcad.make.parts.solids import FAR_MM, Solid, box, placed, rod, union
+from fpcad.make.parts.solids import FAR_MM, Solid, box, extruded, placed, rod, union
 from fpcad.make.parts.spool import spool_solid
 from fpcad.make.parts.tension_carriage import (
     BRIDGE_MM,
@@ -42,30 +42,13 @@ from fpcad.make.toolchain import cadquery
 from fpcad.spec.hardware import Print
 from fpcad.spec.schema import Spec
 
-SUNK_MM = 1.0
-"""What stands on the front plate begins this far inside of it."""
-RIB_MM = 4.0
-"""Length along the shafts of the ribs that keep the motors from turning."""
-FOOT_MM = 3.0
-"""Width of the ledges that the motors stand on."""
-TONGUE_MM = 2.0
-"""How far the walls between motors reach into the back plate."""
 CONE_SLOPE = 1.25
 """Height by radius of the cone above the front recess: steep enough to be printed without support."""
-BOSS_PLACE = 0.6
-"""|y| of the back plate's screws, as a share of that of the motors' outer faces."""
-BACK_SCREW = "M3"
 CABLE_MM = (6.0, 16.0)
 """Width and height of the cables' opening."""
 TIE_MM = (1.6, 4.5)
 """Width and height of the two slots for a cable tie."""
 TIE_APART_MM = 2.8
-PILOT_BOSS_MM = 5.8
-"""Height of the back plate's boss."""
-COUNTERBORE_MM = 6.3
-"""Depth of the counterbores of the robot's M6 screws."""
-EASY_MM = 0.3
-"""Printed holes for nuts and heads are wider than these by this, in diameter."""
 
 
 def box_solid(b: MotorBox, settings: Print) -> Solid:
@@ -74,43 +57,11 @@ def box_solid(b: MotorBox, settings: Print) -> Solid:
     gap = settings.clearance_mm
     pieces = [plate, *_end_walls(b, gap)]
     for row in (1, -1):
-        pieces += [_turned(piece, row) for piece in _separators(b, gap)]
+        pieces += [in_row(piece, row) for piece in separators(b, gap)]
     pieces += [_tower(b, slot) for slot in b.slots]
     cuts = [cut for slot in b.slots for cut in _ports(b, slot, settings)]
     cuts += [*_front_flange(b, settings), *_boss_holes(b), *_cable_way(b)]
     return union(pieces).cut(*cuts).clean()
-
-
-def back_solid(b: MotorBox, settings: Print) -> Solid:
-    """The back plate: slots for the walls' tongues inside, the robot's flange outside."""
-    z, gap = b.back_inner, settings.clearance_mm
-    half_y = b.body_outer + gap + LIP_MM
-    x = b.wall_x + BOSS_MM
-    body = box((-x, -half_y, z), (x, half_y, z + BACK_MM))
-    face = z + BACK_MM + BACK_DISC_MM
-    body = body.fuse(rod((0, 0, z + 1), (0, 0, face), FLANGE_DISC_MM / 2))
-    boss = (PILOT_MM - settings.slip_mm) / 2
-    body = body.fuse(rod((0, 0, z + 1), (0, 0, face + PILOT_BOSS_MM), boss))
-    cuts = []
-    for wall_x in _inner_walls(b):
-        half = _web_half(b) + gap
-        for low, high in _tongues(b):
-            slot = box((-half, low - gap, z - 1), (half, high + gap, z + TONGUE_MM + gap))
-            cuts += [_turned(slot.translate((wall_x, 0, 0)), row) for row in (1, -1)]
-    m6, m3 = (lookup("screws", Screw, size) for size in (FLANGE_SCREW, BACK_SCREW))
-    head = (m6.head_diameter_mm + EASY_MM) / 2
-    for x, y in b.flange_holes:
-        cuts.append(rod((x, y, z - 1), (x, y, face + 1), m6.clearance_hole_mm / 2))
-        cuts.append(rod((x, y, z - 1), (x, y, z + COUNTERBORE_MM), head))
-    for x, y in boss_places(b):
-        cuts.append(rod((x, y, z - 1), (x, y, z + BACK_MM + 1), m3.clearance_hole_mm / 2))
-    return body.cut(*cuts).clean()
-
-
-def boss_places(b: MotorBox) -> list[tuple[float, float]]:
-    """x, y of the screws that hold the back plate."""
-    x, y = b.wall_x + BOSS_MM / 2, BOSS_PLACE * b.body_outer
-    return [(sx * x, sy * y) for sx in (-1, 1) for sy in (-1, 1)]
 
 
 def carriage_places(b: MotorBox, share: float = 0.5) -> list[Array]:
@@ -164,56 +115,9 @@ def _made(b: MotorBox, print_json: str) -> dict[str, tuple[Solid, trimesh.Trimes
     return {name: (solid, mesh_of(name, solid, settings)) for name, solid in solids.items()}
 
 
-def _turned(solid: Solid, row: int) -> Solid:
-    """What was made for row +1, in its own row."""
-    return solid if row > 0 else solid.rotate((0, 0, 0), (0, 0, 1), 180.0)
-
-
-def _web_half(b: MotorBox) -> float:
-    """Half thickness of the walls between motors."""
-    return (b.pitch - b.body.width_mm) / 2 - b.body.gap_mm
-
-
-def _inner_walls(b: MotorBox) -> list[float]:
-    """X of the walls between motors."""
-    return [(n - b.per_row / 2) * b.pitch for n in range(1, b.per_row)]
-
-
-def _tongues(b: MotorBox) -> list[tuple[float, float]]:
-    """Ranges of y, in row +1, in which the walls between motors reach into the back plate."""
-    low, high = b.body_inner, b.body_outer
-    return [(low, low + RIB_MM), (high - RIB_MM, high)]
-
-
-def _separators(b: MotorBox, gap: float) -> list[Solid]:
-    """Row +1: walls with ribs that hold the motors in x, lips that hold them in y, and ledges for their fronts."""
-    low, high, start = b.body_inner, b.body_outer, PLATE_MM - SUNK_MM
-    inner, outer, top = low - gap - LIP_MM, high + gap + LIP_MM, b.back_inner
-    web, rib = _web_half(b), _web_half(b) + b.body.gap_mm - gap
-    lip = (b.pitch - b.body.horn_diameter_mm) / 2 - SLOT_MM
-    foot = _web_half(b) + b.body.gap_mm + FOOT_MM
-    pieces = []
-    for n in range(b.per_row + 1):
-        x = (n - b.per_row / 2) * b.pitch
-        spans = [
-            (web, inner, outer, top),
-            (rib, inner, low + RIB_MM, top),
-            (rib, high - RIB_MM, outer, top),
-            (lip, inner, low - gap, top),
-            (lip, high + gap, outer, top),
-            (foot, inner, outer, b.motor_front),
-        ]
-        if 0 < n < b.per_row:
-            spans += [(web, y0, y1, top + TONGUE_MM) for y0, y1 in _tongues(b)]
-        for half, y0, y1, z1 in spans:
-            left, right = max(x - half, -b.wall_x), min(x + half, b.wall_x)
-            pieces.append(box((left, y0, start), (right, y1, z1)))
-    return pieces
-
-
 def _end_walls(b: MotorBox, gap: float) -> list[Solid]:
     """Closed walls at both ends, with the columns that hold the back plate's screws."""
-    half_y, inner = b.body_outer + gap + LIP_MM, b.per_row * b.pitch / 2 - _web_half(b)
+    half_y, inner = b.body_outer + gap + LIP_MM, b.per_row * b.pitch / 2 - web_half(b)
     walls = [
         box((min(side * inner, side * b.wall_x), -half_y, 0),
             (max(side * inner, side * b.wall_x), half_y, b.back_inner))
@@ -239,12 +143,6 @@ def _boss_holes(b: MotorBox) -> list[Solid]:
     return cuts
 
 
-def back_screw_length() -> float:
-    """Length [mm] of the back plate's screws."""
-    insert = lookup("inserts", Insert, BACK_SCREW)
-    return lookup("screws", Screw, BACK_SCREW).shortest(BACK_MM + insert.length_mm)
-
-
 def _front_flange(b: MotorBox, settings: Print) -> list[Solid]:
     """The recess, and four holes with pockets that nuts are put into from behind."""
     radius = (PILOT_MM + settings.slip_mm) / 2
@@ -258,6 +156,7 @@ def _front_flange(b: MotorBox, settings: Print) -> list[Solid]:
 
 
 def _cone(radius: float) -> Solid:
+    """What the walls over the recess leave free, so that they are printed without support."""
     cq = cadquery()
     at, up = cq.Vector(0, 0, PILOT_DEPTH_MM), cq.Vector(0, 0, 1)
     return cq.Solid.makeCone(radius, 0.0, CONE_SLOPE * radius, at, up)
@@ -265,12 +164,10 @@ def _cone(radius: float) -> Solid:
 
 def _hexagon(x: float, y: float, half: float, low: float, high: float) -> Solid:
     """A hexagonal prism along z, two of its flats facing x at `half` [mm]."""
-    cq = cadquery()
     corner = half / math.cos(math.pi / 6)
     around = [math.pi / 6 + n * math.pi / 3 for n in range(6)]
-    points = [cq.Vector(x + corner * math.cos(a), y + corner * math.sin(a), low) for a in around]
-    wire = cq.Wire.makePolygon(points, close=True)
-    return cq.Solid.extrudeLinear(wire, [], cq.Vector(0, 0, high - low))
+    points = [(x + corner * math.cos(a), y + corner * math.sin(a)) for a in around]
+    return extruded(points, low, high)
 
 
 def _cable_way(b: MotorBox) -> list[Solid]:

@@ -60,6 +60,8 @@ FREE_MM = 0.5
 """Between what turns and what stands."""
 PORT_MARGIN_MM = 1.0
 """Tubes keep that far from the flange's disc."""
+EASY_MM = 0.3
+"""Printed holes for nuts and heads are wider than these by this, in diameter."""
 BACK_MM = 5.0
 """Thickness of the back plate."""
 BACK_DISC_MM = 6.0

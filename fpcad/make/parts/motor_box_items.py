@@ -8,15 +8,10 @@ import numpy as np
 import trimesh
 
 from fpcad.make.parts.bought import BoughtItem
+from fpcad.make.parts.box_back import BACK_SCREW, COUNTERBORE_MM, back_screw_length, boss_places
 from fpcad.make.parts.catalogue import Insert, MotorBody, Nut, Screw, lookup
 from fpcad.make.parts.fasteners import insert_mesh, nut_mesh, screw_mesh
-from fpcad.make.parts.motor_box import (
-    BACK_SCREW,
-    COUNTERBORE_MM,
-    back_screw_length,
-    boss_places,
-    carriage_places,
-)
+from fpcad.make.parts.motor_box import carriage_places
 from fpcad.make.parts.motor_box_dimensions import (
     BACK_DISC_MM,
     BACK_MM,

@@ -85,6 +85,13 @@ def prism(outline_xz: Sequence[tuple[float, float]], half_width: float) -> Solid
     return cq.Solid.extrudeLinear(wire, [], cq.Vector(0, 2 * half_width, 0))
 
 
+def extruded(outline: Sequence[tuple[float, float]], low: float, high: float) -> Solid:
+    """A polygon in x, y, extruded along z from `low` to `high`."""
+    cq = cadquery()
+    wire = cq.Wire.makePolygon([cq.Vector(x, y, low) for x, y in outline], close=True)
+    return cq.Solid.extrudeLinear(wire, [], cq.Vector(0, 0, high - low))
+
+
 def behind_bend(ip_flex: tuple[float, float], gap: float) -> Solid:
     """All that a distal link must leave free at its IP joint (at the origin, distal along x).
 

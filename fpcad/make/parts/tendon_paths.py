@@ -59,6 +59,12 @@ class FingerTendons:
             "m3": self._turn(self._ip_extensor, joints, zero),
         }
 
+    def own_strands(self) -> tuple[float, float]:
+        """Lengths [mm] of the strand from input pulley to input pulley, and of one to the IP pulley."""
+        zero = np.zeros(3)
+        across = sum(self._transfer(0.0, zero, hand) for hand in (1, -1))
+        return across, self._ip_extensor(0.0, zero)
+
     def _turn(self, length: Callable[[float, Array], float], joints: Array, zero: Array) -> float:
         at_rest = length(0.0, zero)
         found = root_scalar(

@@ -112,7 +112,7 @@ def test_collision_shapes_are_primitives(clay_hand):
         link.get("name"): [shape.tag for shape in link.findall("collision/geometry/*")]
         for link in robot.findall("link")
     }
-    assert sorted(shapes["palm"]) == ["cylinder"] * 2 + ["sphere"] * 8
+    assert sorted(shapes["palm"]) == ["box"] * 2 + ["cylinder"] * 4 + ["sphere"] * 8
     for finger, link in itertools.product(NAMES.fingers, NAMES.links):
         assert sorted(shapes[f"{finger}_{link}"]) == ["cylinder", "sphere", "sphere"]
 
