@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import ModuleType
 
-from fpcad.errors import ToolchainError
+from fpcad.errors import MakeError, ToolchainError
 
 SystemLibrary = tuple[str, str]
 """A shared library's name and the Debian package that holds it."""
@@ -31,6 +33,18 @@ def cadquery() -> ModuleType:
     import cadquery
 
     return cadquery
+
+
+@contextmanager
+def modelling(part: str) -> Iterator[None]:
+    """Within it, a failure of the CAD kernel is a :class:`MakeError` that names the part."""
+    cadquery()
+    from OCP.Standard import Standard_Failure
+
+    try:
+        yield
+    except Standard_Failure as error:
+        raise MakeError(f"part {part}: the CAD kernel cannot model it ({error})") from error
 
 
 def pyvista() -> ModuleType:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from fpcad.errors import ToolchainError
+from fpcad.errors import MakeError, ToolchainError
 from fpcad.make import toolchain
+from fpcad.make.toolchain import modelling
 
 
 def without(monkeypatch: pytest.MonkeyPatch, *missing: str) -> None:
@@ -35,3 +36,11 @@ def test_drawing_needs_either_library(monkeypatch):
 
 def test_a_library_that_does_not_exist_does_not_load():
     assert not toolchain._loads("libdoes-not-exist.so.0")
+
+
+def test_a_failure_of_the_cad_kernel_names_the_part():
+    from OCP.Standard import Standard_Failure
+
+    told = "part palm: the CAD kernel cannot model it"
+    with pytest.raises(MakeError, match=told), modelling("palm"):
+        raise Standard_Failure("curves do not join")

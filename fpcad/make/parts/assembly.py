@@ -26,7 +26,9 @@ from fpcad.make.parts.palm_pad import pad_place, pad_solid
 from fpcad.make.parts.part import FIXED_LINK, Array, Material, Part, in_place
 from fpcad.make.parts.skin import distal_skin, proximal_skin
 from fpcad.make.parts.solids import Solid
+from fpcad.make.toolchain import modelling
 from fpcad.model.geometry import HandGeometry
+from fpcad.spec.hardware import Print
 from fpcad.spec.schema import Spec
 
 __all__ = ["Assembly", "BoughtItem", "Progress", "make_assembly"]
@@ -78,12 +80,18 @@ def _made(plan: _Plan, d: Dimensions, spec: Spec) -> tuple[Solid, trimesh.Trimes
     settings = spec.print.model_copy(update=SKIN_MESH) if plan.material == "skin" else spec.print
     for make in plan.makers[:-1]:
         try:
-            solid = make(d)
-            return solid, mesh_of(plan.name, solid, settings)
+            return _modelled(plan.name, make, d, settings)
         except MakeError as error:
             log.debug("%s: %s; another inset is tried", plan.name, error)
-    solid = plan.makers[-1](d)
-    return solid, mesh_of(plan.name, solid, settings)
+    return _modelled(plan.name, plan.makers[-1], d, settings)
+
+
+def _modelled(
+    name: str, make: Callable[[Dimensions], Solid], d: Dimensions, settings: Print
+) -> tuple[Solid, trimesh.Trimesh]:
+    with modelling(name):
+        solid = make(d)
+        return solid, mesh_of(name, solid, settings)
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -147,9 +148,21 @@ def test_pose_along_points_its_z():
     assert np.isclose(np.linalg.det(pose[:3, :3]), 1.0)
 
 
-def test_the_palm_weighs_what_its_part_does(clay_hand, clay_parts):
+def test_the_palm_weighs_what_is_fixed_to_it(clay_hand, clay_parts):
+    """Palm, pad, flange and box as printed, and all that is bought for them."""
     palm = ET.parse(urdf_file(clay_hand)).getroot().find("link[@name='palm']/inertial/mass")
     assert palm is not None
-    volume_cm3 = clay_parts["palm"].mesh.volume * 1e-3
-    expected_kg = volume_cm3 * CLAY.print.bone_density_g_cm3 * 1e-3
-    assert float(palm.get("value", "nan")) == pytest.approx(expected_kg)
+    settings = CLAY.print
+    density = {"endoskeleton": settings.bone_density_g_cm3, "skin": settings.skin_density_g_cm3}
+    printed_g = sum(
+        part.mesh.volume * 1e-3 * density[part.material] * len(part.places)
+        for part in clay_parts.values()
+        if part.link == "palm"
+    )
+    inventory = json.loads((clay_hand / "parts" / "assembly.json").read_text())
+    bought_g = sum(
+        row["mass_g"] * len(row["T_link_item"])
+        for row in inventory["bought"]
+        if row["link"] == "palm"
+    )
+    assert float(palm.get("value", "nan")) == pytest.approx((printed_g + bought_g) * 1e-3)
