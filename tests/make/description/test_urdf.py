@@ -147,9 +147,19 @@ def test_pose_along_points_its_z():
     assert np.isclose(np.linalg.det(pose[:3, :3]), 1.0)
 
 
-def test_the_palm_weighs_what_its_part_does(clay_hand, clay_parts):
+def test_the_palm_weighs_what_is_fixed_to_it(clay_hand):
     palm = ET.parse(urdf_file(clay_hand)).getroot().find("link[@name='palm']/inertial/mass")
     assert palm is not None
-    volume_cm3 = clay_parts["palm"].mesh.volume * 1e-3
-    expected_kg = volume_cm3 * CLAY.print.bone_density_g_cm3 * 1e-3
-    assert float(palm.get("value", "nan")) == pytest.approx(expected_kg)
+    density = {
+        "endoskeleton": CLAY.print.bone_density_g_cm3,
+        "skin": CLAY.print.skin_density_g_cm3,
+    }
+    made = assembly_of(CENTRE)
+    grams = sum(
+        part.count * part.mesh.volume * 1e-3 * density[part.material]
+        for part in made.parts
+        if part.link == "palm"
+    )
+    grams += sum(item.count * item.mass_g for item in made.bought if item.link == "palm")
+    assert grams > 12 * motor(CLAY.motors.type).mass_g
+    assert float(palm.get("value", "nan")) == pytest.approx(grams * 1e-3, rel=1e-6)

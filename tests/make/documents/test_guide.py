@@ -72,12 +72,13 @@ def test_pieces_are_cut_at_the_middle_plane():
     whole = [piece for piece in whole if piece[0].bounds[0, 1] < 0 < piece[0].bounds[1, 1]]
     for (mesh, _), (half, _) in zip(whole, cut_open(whole), strict=True):
         assert half.bounds[0, 1] == pytest.approx(0, abs=1e-9)
-        assert half.volume == pytest.approx(mesh.volume / 2, rel=1e-2)
+        assert half.volume == pytest.approx(mesh.volume / 2, rel=2e-2)
 
 
 def test_the_whole_hand_has_a_palm_and_four_fingers():
     pieces = hand_pieces(ASSEMBLY, GEOMETRY, rest_joints(CLAY.hand, GEOMETRY))
-    assert len(pieces) == 1 + 4 * FINGER_PIECES
+    still = sum(len(part.places) for part in ASSEMBLY.parts if part.link == "palm")
+    assert len(pieces) == still + 4 * FINGER_PIECES
 
 
 @pytest.mark.parametrize("finger", GEOMETRY.fingers)
