@@ -13,6 +13,10 @@ from fpcad.make.documents.stamp import Stamp
 from fpcad.make.documents.views import COLOURS, cut_open, draw, finger_pieces, hand_pieces
 from fpcad.make.gates.meetings import tool_mesh
 from fpcad.make.gates.postures import hand_postures, rest_joints
+from fpcad.make.parts.dimensions import finger_dimensions
+from fpcad.make.parts.mounting import mounting
+from fpcad.make.stand.stand import make_stand
+from fpcad.make.stand.views import stand_pieces
 from fpcad.make.trajectory_file import read_trajectory
 from fpcad.pipeline.finished import finished_hand
 from fpcad.spec.dump import spec_hash
@@ -51,6 +55,16 @@ def main(build: Path) -> None:
         held = tool_mesh(spec.tool, 0.0).apply_transform(at.tool[0])
         pieces = [*hand_pieces(assembly, geometry, at.joints[0]), (held, TOOL_COLOUR)]
         draw(pieces, images / f"{spec.name}-holds-{file.stem}.png", (0.55, -1.0, 0.3), stamp)
+    base = mounting(spec, geometry, finger_dimensions(spec, geometry)).T_palm_base
+    files = sorted((build / "trajectories").glob("*.json"))
+    trajectories = {file.stem: read_trajectory(file) for file in files}
+    stand = make_stand(spec, geometry, assembly, base, trajectories)
+    for pose in stand.jigs:
+        pieces = stand_pieces(stand, assembly, geometry, pose, spec.tool)
+        draw(pieces, images / f"{spec.name}-jig-{pose}.png", (0.9, -1.0, 0.5), stamp)
+    palm = [p for p in assembly.parts if p.link == "palm" and p.name.startswith("palm")]
+    below = [(part.mesh, COLOURS[part.material]) for part in palm]
+    draw(below, images / f"{spec.name}-palm-pad.png", (0.3, -0.8, -1.0), stamp)
 
 
 main(Path(sys.argv[1]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime
+from pathlib import Path
 
 import numpy as np
 
@@ -13,15 +14,12 @@ from benchmarks.paper.markdown import share, table
 from benchmarks.paper.recheck_command import ipopt_section, residual_section
 from benchmarks.paper.results import Outcome, Results
 from benchmarks.paper.tally import METRICS, QUANTILES, THRESHOLDS_DEG
+from benchmarks.physics_hypothesis.summary import IN_RESULTS, physics_section
 from fpcad.sample.rrt import ACCEPTED
 
 CHECKPOINTS = (100, 200, 500, 1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000)
 MB = 1e6
-PHYSICS = (
-    "Whether hands that move the tool on paper turn it in a simulation with friction, weight and soft "
-    "tendons, in the open loop: [physics.md](physics.md) and "
-    "[physics-hypothesis.md](physics-hypothesis.md)."
-)
+PHYSICS_PAGE = Path(__file__).parents[2] / "docs" / "physics-hypothesis.md"
 
 
 def write_document(results: Results, picture: str | None) -> str:
@@ -54,8 +52,8 @@ def write_document(results: Results, picture: str | None) -> str:
         "## Accepted poses checked again",
         residual_section(results.recheck),
         ipopt_section(dict(results.ipopt)),
-        "## In physics",
-        PHYSICS,
+        IN_RESULTS,
+        physics_section(PHYSICS_PAGE.read_text(encoding="utf-8")),
     ]
     return "\n\n".join(parts) + "\n"
 

@@ -8,8 +8,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from benchmarks.physics_hypothesis.report import page, read_results
+from benchmarks.physics_hypothesis.report import page
 from benchmarks.physics_hypothesis.run import run
+from benchmarks.physics_hypothesis.scores import read_results
+from benchmarks.physics_hypothesis.summary import with_physics
 from fpcad.commands.console import ConsoleReporter
 from fpcad.pipeline.run import run_stages
 from fpcad.pipeline.stage import Build
@@ -31,17 +33,25 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--time-step-ms", type=float, default=1000.0 * TIME_STEP_S)
     parser.add_argument("--page", type=Path, default=Path("docs/physics-hypothesis.md"))
+    parser.add_argument("--results", type=Path, default=Path("docs/results.md"))
+    parser.add_argument(
+        "--tables-only", action="store_true", help="write what is there, try no hand"
+    )
     parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args()
     spec = load_spec(asked.spec)
     sampling = spec.sampling.model_copy(update={"candidates": round(SPARE * asked.hands)})
     spec = spec.model_copy(update={"sampling": sampling})
-    build = Build(spec, asked.build / spec.name, asked.workers, ConsoleReporter())
-    run_stages(build, "evaluate")
     trials = asked.build / "trials"
-    run(build, asked.hands, trials, asked.time_step_ms / 1000.0, asked.seed)
+    if not asked.tables_only:
+        build = Build(spec, asked.build / spec.name, asked.workers, ConsoleReporter())
+        run_stages(build, "evaluate")
+        run(build, asked.hands, trials, asked.time_step_ms / 1000.0, asked.seed)
     results = read_results(trials)
-    write_whole(asked.page, page(results, about(spec, asked, len(results))))
+    written = page(results, about(spec, asked, len(results)))
+    write_whole(asked.page, written)
+    document = asked.results.read_text(encoding="utf-8")
+    write_whole(asked.results, with_physics(document, written))
 
 
 def about(spec: Spec, asked: argparse.Namespace, done: int) -> str:

@@ -26,7 +26,11 @@ from fpcad.make.loads.table import FILE as LOADS
 from fpcad.make.loads.table import loads_csv
 from fpcad.make.mesh import in_metres, stl_bytes
 from fpcad.make.parts.assembly import Assembly, Progress, make_assembly
+from fpcad.make.parts.dimensions import finger_dimensions
+from fpcad.make.parts.mounting import mounting
 from fpcad.make.parts.tendon_lengths import pieces_to_cut
+from fpcad.make.stand.stand import GATE as JIG_GATE
+from fpcad.make.stand.stand import Stand, make_stand, stand_rows
 from fpcad.make.trajectory import Trajectory
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.geometry import HandGeometry
@@ -65,7 +69,9 @@ def make_hand(
             log.info("%s", finding)
     progress("files")
     parts, folder = assembly.parts, out / "parts"
-    files = write_parts(spec, assembly, geometry, folder, stamp)
+    stand = _stand(spec, geometry, assembly, trajectories, progress)
+    findings += stand.findings if stand else ()
+    files = write_parts(spec, assembly, geometry, folder, stamp, stand)
     files.append(stamp.write(folder / CHECKS, findings_csv(findings)))
     files.append(stamp.write(folder / LOADS, loads_csv(loads)))
     files += [
@@ -79,24 +85,54 @@ def make_hand(
 
 
 def write_parts(
-    spec: Spec, assembly: Assembly, geometry: HandGeometry, folder: Path, stamp: Stamp
+    spec: Spec,
+    assembly: Assembly,
+    geometry: HandGeometry,
+    folder: Path,
+    stamp: Stamp,
+    stand: Stand | None = None,
 ) -> list[Path]:
     """Write what is printed and bought: meshes, solids, print files, list and bill."""
-    files = []
+    files, helpers = [], stand.parts if stand else ()
+    for part in helpers:
+        solid = part_step(part.name, part.solid)
+        files.append(stamp.write(folder / "step" / f"{part.name}.step", solid))
+    files += write_print_files(helpers, spec.print, folder, stamp)
     for part in assembly.parts:
         mesh = stl_bytes(part.mesh)
         files.append(stamp.write(folder / part.material / f"{part.name}.stl", mesh))
         solid = part_step(part.name, part.solid)
         files.append(stamp.write(folder / "step" / f"{part.name}.step", solid))
-    whole = assembly_step(assembly, geometry, stamp.name)
-    files.append(stamp.write(folder / "step" / ASSEMBLY_STEP, whole))
+    together = assembly_step(assembly, geometry, stamp.name)
+    files.append(stamp.write(folder / "step" / ASSEMBLY_STEP, together))
     files += write_print_files(assembly.parts, spec.print, folder, stamp)
     files += write_print_files(extra_parts(spec), spec.print, folder, stamp)
     files += write_inventory(assembly, folder, stamp)
-    files += write_guide(spec, assembly, geometry, folder, stamp)
+    files += write_guide(spec, assembly, geometry, folder, stamp, stand)
+    everything = Assembly((*assembly.parts, *helpers), assembly.bought)
     tendons = pieces_to_cut(spec, geometry)
-    bill = bill_of_materials(spec, assembly, len(geometry.fingers), {}, tendons)
+    bill = bill_of_materials(spec, everything, len(geometry.fingers), {}, tendons)
+    bill += stand_rows(spec) if stand else []
     return [*files, stamp.write(folder / "bom.csv", bom_csv(bill))]
+
+
+def _stand(
+    spec: Spec,
+    geometry: HandGeometry,
+    assembly: Assembly,
+    trajectories: Mapping[str, Trajectory],
+    progress: Progress,
+) -> Stand | None:
+    """The bench stand with its jigs, where there are poses to hold a tool at."""
+    if not trajectories:
+        return None
+    progress("bench stand")
+    base = mounting(spec, geometry, finger_dimensions(spec, geometry)).T_palm_base
+    stand = make_stand(spec, geometry, assembly, base, trajectories)
+    for finding in stand.findings:
+        if finding.severity is Severity.WARNING and finding.gate == JIG_GATE:
+            log.info("%s", finding)
+    return stand
 
 
 def link_bodies(spec: Spec, assembly: Assembly) -> dict[str, LinkBody]:

@@ -118,8 +118,8 @@ class Link:
         Raises :class:`LinkLost` after 8 repeats in vain or 0.45 s of silence, and
         :class:`ControllerReset` when the controller no longer knows the session.
         """
-        self.record.look(self.clock())
         frames = self.reader.feed(self.transport.read())
+        self.record.look(self.clock())  # a process may be stopped in the midst of reading
         self.record.unread_here = self.reader.bad_frames
         messages = [msg for frame in frames if (msg := self._accept(frame)) is not None]
         # Silence is judged after reading, so that a host that stalled itself blames nobody.

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from benchmarks.physics_hypothesis.report import KINEMATIC, OF_GRIP, page
+from benchmarks.physics_hypothesis.report import OF_GRIP, page
+from benchmarks.physics_hypothesis.scores import KINEMATIC
+from benchmarks.physics_hypothesis.summary import with_physics
 
 
 def result(number: int, share: float, held: bool = True, faults: dict[str, str] | None = None):
@@ -31,3 +33,11 @@ def test_a_figure_that_orders_hands_as_physics_does_correlates_fully():
     row = next(line for line in text.splitlines() if line.startswith("| metrics tmr_deg"))
     assert row.endswith("| +1.00 |")
     assert "| margins cone_share | - |" in text
+
+
+def test_the_summary_goes_to_the_results():
+    results = [result(n, 0.2 * n) for n in range(1, 6)]
+    document = with_physics("# Results\n\n## In physics\n\nolder\n", page(results, "x"))
+    assert document.startswith("# Results\n\n## In physics\n\nWhether hands")
+    assert "- unloaded: 5 hold, 3 pass half, 1 nine tenths\n" in document
+    assert document.endswith("- unloaded: a `tmr_deg` +1.00\n")

@@ -95,6 +95,7 @@ def test_ctrl_c_holds_and_twice_lets_go():
         assert bus.read_state().torque_on is (wanted == 1)
 
 
+@pytest.mark.real_time
 @pytest.mark.parametrize("maker", SERVOS)
 def test_one_finger_is_homed_through_the_makers_sdk(maker):
     """Three servos behind a pseudo terminal, six times as fast as real ones."""

@@ -74,6 +74,25 @@ def test_a_longer_stall_ends_in_hold_and_is_not_resumed(stall_s):
     assert line.device.state is State.HOLD and line.device.follower.rate == 0
 
 
+class FrozenLine(VirtualLine):
+    """The host is stopped while it waits for bytes, and finds what has come meanwhile."""
+
+    frozen = False
+
+    def read(self):
+        if not self.frozen and self.device.follower.path_us > 1_000_000:
+            self.frozen = True
+            self.let_pass(0.7)
+        return super().read()
+
+
+def test_a_host_that_is_frozen_while_it_reads_blames_no_line():
+    line = FrozenLine()
+    with pytest.raises(ControllerHeld, match="silence"):
+        run(line)
+    assert line.device.state is State.HOLD
+
+
 def test_a_restart_in_mid_run_is_never_resumed():
     line = VirtualLine()
 

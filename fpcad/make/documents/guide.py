@@ -18,6 +18,8 @@ from fpcad.make.gates.postures import rest_joints
 from fpcad.make.loads.strands import PRETENSION_N
 from fpcad.make.parts.assembly import Assembly
 from fpcad.make.parts.catalogue import Tendon, lookup
+from fpcad.make.stand.stand import JIG, Stand, bench_steps
+from fpcad.make.stand.views import stand_pieces
 from fpcad.model.geometry import HandGeometry
 from fpcad.model.transmission import finger_transmission
 from fpcad.spec.schema import Spec
@@ -36,6 +38,7 @@ LOOPS = {
     "m2": "MCP differential, other side",
     "m3": "IP joint",
 }
+STAND_VIEW = (0.9, -1.0, 0.5)
 VIEWS = {
     "finger_apart": ("A finger taken apart", (0.3, -1.0, 0.5)),
     "finger_cut": ("A finger cut open at its middle plane", (0.0, -1.0, 1e-4)),
@@ -54,7 +57,12 @@ NEEDED = {"foot_cut": "flange", "box_apart": "motor_box", "box_cut": "tension_ca
 
 
 def write_guide(
-    spec: Spec, assembly: Assembly, geometry: HandGeometry, folder: Path, stamp: Stamp
+    spec: Spec,
+    assembly: Assembly,
+    geometry: HandGeometry,
+    folder: Path,
+    stamp: Stamp,
+    stand: Stand | None = None,
 ) -> list[Path]:
     """Write the guide and its pictures; without what drawing needs, the guide says what is missing."""
     files, missing = [], ""
@@ -71,10 +79,15 @@ def write_guide(
         for name in views_of(assembly):
             direction, file = VIEWS[name][1], folder / PICTURES / f"{name}.png"
             files.append(draw(pieces[name](), file, direction, stamp))
+        if stand:
+            for pose in stand.jigs:
+                shown = stand_pieces(stand, assembly, geometry, pose, spec.tool)
+                file = folder / PICTURES / f"{JIG}{pose}.png"
+                files.append(draw(shown, file, STAND_VIEW, stamp))
     except ToolchainError as error:
         missing = str(error)
         log.warning("assembly.md has no pictures: %s", missing)
-    text = guide_text(spec, assembly, stamp, missing)
+    text = guide_text(spec, assembly, stamp, missing, stand)
     return [*files, stamp.write(folder / FILE, text)]
 
 
@@ -84,7 +97,9 @@ def views_of(assembly: Assembly) -> list[str]:
     return [name for name in VIEWS if NEEDED.get(name, "palm") in made]
 
 
-def guide_text(spec: Spec, assembly: Assembly, stamp: Stamp, missing: str = "") -> str:
+def guide_text(
+    spec: Spec, assembly: Assembly, stamp: Stamp, missing: str = "", stand: Stand | None = None
+) -> str:
     """The guide in Markdown; `missing` says why there are no pictures."""
     lines = [f"# How to put {spec.name} together", "", stamp.text, ""]
     if missing:
@@ -100,6 +115,10 @@ def guide_text(spec: Spec, assembly: Assembly, stamp: Stamp, missing: str = "") 
     lines += ["## Buy", "", *_bought_table(assembly), ""]
     lines += ["## Tendons", "", *_tendon_table(spec), ""]
     lines += ["## Steps", "", *steps(spec, assembly, PRETENSION_N), ""]
+    if stand and stand.jigs:
+        lines += ["## On the bench", "", *bench_steps(stand), ""]
+        pictures = () if missing else stand.jigs
+        lines += [f"![Hand, jig and tool at {p}]({PICTURES}/{JIG}{p}.png)\n" for p in pictures]
     return "\n".join(lines)
 
 

@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from fpcad.make.gates.finding import Finding, Severity
+from fpcad.make.loads.cases import GRIPPING
 from fpcad.make.loads.table import ANY, Load
+
+Kind = tuple[str, str]
+"""What is borne, and where on a finger."""
 
 TITLE = "loads"
 GATE = "load"
@@ -13,23 +17,33 @@ GATE = "load"
 
 
 def load_findings(loads: Iterable[Load]) -> list[Finding]:
-    """One finding for each kind of load, its worst pose and case; loads.csv has them all."""
-    worst: dict[tuple[str, str], Load] = {}
+    """One finding for each kind of load, its worst pose and case; loads.csv has them all.
+
+    What is too much at the most that motors do may be well below the limit while they only grip:
+    that share is told beside it.
+    """
+    worst: dict[Kind, Load] = {}
+    gripping: dict[Kind, float] = {}
     for load in loads:
         kind = load.what, load.where.split(" ", 1)[-1] if load.what in PER_FINGER else ""
         if kind not in worst or load.share > worst[kind].share:
             worst[kind] = load
-    return [_finding(load) for load in worst.values()]
+        if load.case == GRIPPING:
+            gripping[kind] = max(load.share, gripping.get(kind, 0.0))
+    return [_finding(load, gripping.get(kind)) for kind, load in worst.items()]
 
 
 PER_FINGER = ("strand", "bearing", "pin pressure", "pin bending", "bone")
 """Kinds of which each part of a finger has its own finding."""
 
 
-def _finding(load: Load) -> Finding:
+def _finding(load: Load, gripping: float | None) -> Finding:
     severity = Severity.WARNING if load.share > 1 else Severity.FIGURE
     figures = load.load, load.limit, load.unit
-    return Finding(GATE, severity, load.where, *figures, text_of(load))
+    beside = ""
+    if gripping is not None and load.case != GRIPPING:
+        beside = f"; gripping alone {100 * gripping:.0f} %"
+    return Finding(GATE, severity, load.where, *figures, text_of(load) + beside)
 
 
 def text_of(load: Load) -> str:

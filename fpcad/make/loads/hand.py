@@ -27,7 +27,7 @@ from fpcad.units import DEG_PER_RAD, NM_PER_NMM
 
 Array = NDArray[np.float64]
 
-STALLED = "a motor stalls"
+STALLED = "at stall"
 
 
 def hand_loads(

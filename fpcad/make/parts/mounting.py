@@ -56,6 +56,15 @@ class Mounting:
         """The link that the box is fixed to: the palm's, or none of the robot's."""
         return FIXED_LINK if self.spec.mount.box else BOX_LINK
 
+    @property
+    def T_palm_base(self) -> Array:
+        """Pose (4, 4) [mm] in H of the face that a robot or a stand takes, z away from the hand."""
+        if not self.spec.mount.box:
+            return self.flange.T_palm_flange
+        back = np.eye(4)
+        back[2, 3] = self.box.size[2]
+        return self.tubes.T_palm_box @ back
+
     def slot(self, motor: str) -> MotorSlot:
         """The place in the box of a motor such as `index_m1`."""
         return self.box.slots[self.tubes.slots[motor]]

@@ -142,3 +142,13 @@ def test_a_weak_motor_is_told_with_figures():
     assert "press,gripping,motor torque,index_m3 (small),1.31,0.9,N m,1.456,12.2" in loads_csv(
         loads
     )
+
+
+def test_what_is_too_much_at_most_tells_its_share_while_gripping():
+    loads = [
+        Load("carve", GRIPPING, "bearing", "thumb IP ball MR74", 53.5, 107.0, "N", 1.0),
+        Load("poke", MOST, "bearing", "index IP ball MR74", 160.5, 107.0, "N", 5.0),
+    ]
+    (told,) = load_findings(loads)
+    assert told.severity is Severity.WARNING and told.part == "index IP ball MR74"
+    assert told.text.endswith("limit 107 N (150 %); gripping alone 50 %")

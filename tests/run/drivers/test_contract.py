@@ -7,9 +7,10 @@ import pytest
 
 from fpcad.run.errors import ControllerHeld, GoalRefused, LinkLost, PortMissing, WatchdogTripped
 from tests.firmware.core import made
+from tests.firmware.lateness import judged_fairly
 from tests.run.drivers.rigs import CONTROLLERS, DRIVERS, SERVOS, rig, unplug
 
-pytestmark = pytest.mark.filterwarnings("error")
+pytestmark = [pytest.mark.filterwarnings("error"), pytest.mark.real_time]
 
 
 @pytest.fixture(params=DRIVERS)
@@ -17,7 +18,7 @@ def driver(request):
     if request.param == "firmware":
         made("host")
     with rig(request.param) as there:
-        there.bus.open()
+        judged_fairly(there.bus.open, request.param)
         yield there
         there.bus.close()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import pty
 import select
@@ -10,6 +11,7 @@ import time
 import tty
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -17,6 +19,8 @@ from fpcad.run.motor_map import Mounting
 from fpcad.run.sim.tendon_hand import TendonHand
 from tests.run.virtual import Damage, untouched
 
+PING, READ, WRITE, SYNC_READ, SYNC_WRITE = 0x01, 0x02, 0x03, 0x82, 0x83
+"""Instructions, the same for both makers."""
 COUNT_RAD = 2 * np.pi / 4096
 STALL_MA = 2700.0
 
@@ -37,6 +41,11 @@ class Faults:
 
 class ServoBench(ABC):
     """Memory of each servo by id, and the hand that their motors pull."""
+
+    width: ClassVar[int]
+    """Bytes of a register's address, and of a length."""
+    number_register: ClassVar[int]
+    goal_register: ClassVar[int]
 
     def __init__(self, hand: TendonHand, mounting: Mounting, numbers: tuple[int, ...]) -> None:
         self.hand, self.mounting = hand, mounting
@@ -78,6 +87,18 @@ class ServoBench(ABC):
         """Take whole instructions out of the buffer, obey them, and answer."""
 
     @abstractmethod
+    def status(self, number: int, data: bytes) -> bytes:
+        """A servo's answer as a packet."""
+
+    @abstractmethod
+    def who(self, number: int) -> bytes:
+        """What a servo answers to a ping."""
+
+    def refuses(self, number: int, address: int) -> bool:
+        """Whether a register cannot be written now."""
+        return address == self.goal_register and number in self.faults.deaf_goals
+
+    @abstractmethod
     def goal_counts(self, number: int) -> int: ...
 
     @abstractmethod
@@ -89,6 +110,44 @@ class ServoBench(ABC):
     @abstractmethod
     def show(self, number: int, counts: int, current_ma: float) -> None:
         """Write what a servo measures to its memory."""
+
+    def obey(self, number: int, instruction: int, data: bytes) -> bytes:
+        """Carry out one instruction; what the servos answer."""
+        width = self.width
+        address = int.from_bytes(data[:width], "little")
+        length = int.from_bytes(data[width : 2 * width], "little")
+        rest = data[2 * width :]
+        if instruction == SYNC_READ:
+            return self.answer_in_turn(rest, address, length)
+        if instruction == SYNC_WRITE:
+            for i in range(0, len(rest), 1 + length):
+                self.write(rest[i], address, rest[i + 1 : i + 1 + length])
+            return b""
+        if not self.listens(number):
+            return b""
+        if instruction == PING:
+            return self.status(number, self.who(number))
+        if instruction == READ:
+            return self.status(number, bytes(self.memory[number][address : address + length]))
+        self.write(number, address, data[width:])
+        return self.status(number, b"")
+
+    def answer_in_turn(self, numbers: bytes, address: int, length: int) -> bytes:
+        """Each waits for the one before it, so nobody follows one that is silent."""
+        there = itertools.takewhile(self.listens, numbers)
+        return b"".join(
+            self.status(n, bytes(self.memory[n][address : address + length])) for n in there
+        )
+
+    def write(self, number: int, address: int, data: bytes) -> None:
+        if not self.listens(number) or self.refuses(number, address):
+            return
+        self.memory[number][address : address + len(data)] = data
+        if address == self.number_register:
+            self.renumber(number, data[0])
+
+    def listens(self, number: int) -> bool:
+        return number in self.memory and number not in self.faults.dead
 
     def renumber(self, old: int, new: int) -> None:
         self.memory[new] = self.memory.pop(old)

@@ -7,8 +7,7 @@ import time
 from tests.run.servos.bench import STALL_MA, ServoBench
 
 HEADER = b"\xff\xff\xfd\x00"
-PING, READ, WRITE, STATUS, SYNC_READ, SYNC_WRITE = 0x01, 0x02, 0x03, 0x55, 0x82, 0x83
-EVERYBODY = 0xFE
+STATUS = 0x55
 ID, MODE, TORQUE, WATCHDOG, CURRENT_LIMIT, GOAL = 7, 11, 64, 98, 102, 116
 TRIPPED = 0xFF
 
@@ -31,6 +30,7 @@ def status(number: int, error: int, data: bytes) -> bytes:
 
 
 class DynamixelBench(ServoBench):
+    width, number_register, goal_register = 2, ID, GOAL
     spoke_s = 0.0
 
     def boot(self, number: int) -> None:
@@ -75,42 +75,14 @@ class DynamixelBench(ServoBench):
                 body = packet[7:-2].replace(b"\xff\xff\xfd\xfd", b"\xff\xff\xfd")
                 out += self.obey(packet[4], body[0], body[1:])
 
-    def obey(self, number: int, instruction: int, data: bytes) -> bytes:
-        address, length = int.from_bytes(data[:2], "little"), int.from_bytes(data[2:4], "little")
-        if instruction == SYNC_READ:
-            return self.answer_in_turn(data[4:], address, length)
-        if instruction == SYNC_WRITE:
-            for i in range(4, len(data), 1 + length):
-                self.write(data[i], address, data[i + 1 : i + 1 + length])
-            return b""
-        if number not in self.memory or number in self.faults.dead:
-            return b""
-        error = self.faults.complaints.get(number, 0)
-        if instruction == PING:
-            return status(number, error, bytes(self.memory[number][0:2]) + b"\x34")
-        if instruction == READ:
-            return status(number, error, bytes(self.memory[number][address : address + length]))
-        self.write(number, address, data[2:])
-        return status(number, error, b"")
+    def status(self, number: int, data: bytes) -> bytes:
+        return status(number, self.faults.complaints.get(number, 0), data)
 
-    def answer_in_turn(self, numbers: bytes, address: int, length: int) -> bytes:
-        """Each waits for the one before it, so nobody follows one that is silent."""
-        out = b""
-        for n in numbers:
-            if n in self.faults.dead or n not in self.memory:
-                break
-            error = self.faults.complaints.get(n, 0)
-            out += status(n, error, bytes(self.memory[n][address : address + length]))
-        return out
+    def who(self, number: int) -> bytes:
+        return bytes(self.memory[number][0:2]) + b"\x34"
 
-    def write(self, number: int, address: int, data: bytes) -> None:
-        memory = self.memory.get(number)
-        if memory is None or number in self.faults.dead:
-            return
-        if address == GOAL and (memory[WATCHDOG] == TRIPPED or number in self.faults.deaf_goals):
-            return
-        if address in (ID, MODE) and memory[TORQUE]:
-            return
-        memory[address : address + len(data)] = data
-        if address == ID:
-            self.renumber(number, data[0])
+    def refuses(self, number: int, address: int) -> bool:
+        memory = self.memory[number]
+        tripped = address == GOAL and memory[WATCHDOG] == TRIPPED
+        locked = address in (ID, MODE) and bool(memory[TORQUE])
+        return tripped or locked or super().refuses(number, address)

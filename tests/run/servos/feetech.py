@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from tests.run.servos.bench import ServoBench
 
-PING, READ, WRITE, SYNC_READ, SYNC_WRITE = 0x01, 0x02, 0x03, 0x82, 0x83
 ID, TORQUE, GOAL, TORQUE_LIMIT, LOCK, POSITION = 5, 40, 42, 48, 55, 56
 
 
@@ -14,6 +13,8 @@ def status(number: int, error: int, data: bytes) -> bytes:
 
 
 class FeetechBench(ServoBench):
+    width, number_register, goal_register = 1, ID, GOAL
+
     def boot(self, number: int) -> None:
         memory = self.memory[number]
         memory[0:5] = bytes([3, 10, 0, 9, 3])  # firmware 3.10, model 777
@@ -52,41 +53,12 @@ class FeetechBench(ServoBench):
             del buffer[:end]
             out += self.obey(packet[2], packet[4], packet[5:-1])
 
-    def obey(self, number: int, instruction: int, data: bytes) -> bytes:
-        if instruction == SYNC_READ:
-            return self.answer_in_turn(data[2:], data[0], data[1])
-        if instruction == SYNC_WRITE:
-            address, length = data[0], data[1]
-            for i in range(2, len(data), 1 + length):
-                self.write(data[i], address, data[i + 1 : i + 1 + length])
-            return b""
-        if number not in self.memory or number in self.faults.dead:
-            return b""
-        error = self.faults.complaints.get(number, 0)
-        if instruction == PING:
-            return status(number, error, b"")
-        if instruction == READ:
-            return status(number, error, bytes(self.memory[number][data[0] : data[0] + data[1]]))
-        self.write(number, data[0], data[1:])
-        return status(number, error, b"")
+    def status(self, number: int, data: bytes) -> bytes:
+        return status(number, self.faults.complaints.get(number, 0), data)
 
-    def answer_in_turn(self, numbers: bytes, address: int, length: int) -> bytes:
-        out = b""
-        for n in numbers:
-            if n in self.faults.dead or n not in self.memory:
-                break
-            error = self.faults.complaints.get(n, 0)
-            out += status(n, error, bytes(self.memory[n][address : address + length]))
-        return out
+    def who(self, number: int) -> bytes:
+        return b""
 
-    def write(self, number: int, address: int, data: bytes) -> None:
-        memory = self.memory.get(number)
-        if memory is None or number in self.faults.dead:
-            return
-        if address == GOAL and number in self.faults.deaf_goals:
-            return
-        if address == ID and memory[LOCK]:
-            return
-        memory[address : address + len(data)] = data
-        if address == ID:
-            self.renumber(number, data[0])
+    def refuses(self, number: int, address: int) -> bool:
+        locked = address == ID and bool(self.memory[number][LOCK])
+        return locked or super().refuses(number, address)
