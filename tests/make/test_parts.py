@@ -42,6 +42,11 @@ def test_fingers_share_their_parts(clay_parts):
         "proximal_skin": 4,
         "distal_bone": 4,
         "distal_skin": 4,
+        "flange": 1,
+        "motor_box": 1,
+        "box_back": 1,
+        "spool": 12,
+        "tension_carriage": 12,
     }
 
 

@@ -29,7 +29,7 @@ def steps(spec: Spec, assembly: Assembly, pretension_n: float) -> Iterator[str]:
         ("motor_box" in made, "Set the motors' ids one by one, and write each on its motor: `motor_places` in `hand/transmission.yaml` "
                               "tells which sits where. Put them in, horns outward, and lead the cables through the lane between the rows."),
         ("spool" in made, "Turn each motor to the middle of its travel and screw a spool on its horn, knots' pockets as drawn."),
-        ("box_back" in made, "Close the box with its back plate; its M6 screws for the robot go in before."),
+        ("box_back" in made, "Bolt the back plate to the robot with its M6 screws, which the closed box covers; then screw the box to it."),
         ("motor_box" in made and on_flange, "Bolt the flange to the box's front with four M6 screws, heads towards the hand."),
         ("motor_box" in made and not on_flange, "Fix the box where it shall stand, and the flange to the robot."),
         ("tubes" in bought, "Cut the tubes as `bom.csv` tells, square and without burrs, and push each into palm and port, by name. "
