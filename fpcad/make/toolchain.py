@@ -39,7 +39,9 @@ def cadquery() -> ModuleType:
 def modelling(part: str) -> Iterator[None]:
     """Within it, a failure of the CAD kernel is a :class:`MakeError` that names the part."""
     cadquery()
-    from OCP.Standard import Standard_Failure
+    from OCP.Standard import (
+        Standard_Failure,  # pyright: ignore[reportAttributeAccessIssue] - no stubs in the wheel
+    )
 
     try:
         yield

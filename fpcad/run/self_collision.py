@@ -52,7 +52,7 @@ def nearest_meeting(chain: Chain, names: tuple[str, ...], position_rad: Array) -
         for one in chain.capsules:
             if one.link == block.link or _neighbours(chain, one.link, block.link):
                 continue
-            own = np.linalg.inv(frames[block.link] @ block.T_link)
+            own: Array = np.linalg.inv(frames[block.link] @ block.T_link).astype(float)
             start, end = (_into(own, p) for p in ends[id(one)])
             gap = box_distance(start, end, block.half_m) - one.radius_m
             row = int(gap.argmin())

@@ -39,7 +39,9 @@ def test_a_library_that_does_not_exist_does_not_load():
 
 
 def test_a_failure_of_the_cad_kernel_names_the_part():
-    from OCP.Standard import Standard_Failure
+    from OCP.Standard import (
+        Standard_Failure,  # pyright: ignore[reportAttributeAccessIssue] - no stubs in the wheel
+    )
 
     told = "part palm: the CAD kernel cannot model it"
     with pytest.raises(MakeError, match=told), modelling("palm"):
