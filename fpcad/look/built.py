@@ -20,6 +20,7 @@ STAMP = ("hand", "spec_sha256")
 UNITS = {"_g": "g", "_cm3": "cm³", "_mm": "mm"}
 SHOWN_REFUSALS = 10
 MOST_WARNINGS = 2
+SHOWN_LOADS = 30
 """Of the checks at the top of the page; more of them would hide what it is about."""
 
 
@@ -76,6 +77,19 @@ def check_warnings(run: Run) -> list[str]:
     if len(found) <= MOST_WARNINGS:
         return [f"{text}." for text in found]
     return [f"The checks of the chosen hand warn {len(found)} times; the first: {found[0]}."]
+
+
+def load_warnings(run: Run) -> list[str]:
+    """What bears more than it may along the trajectories: how many, and the worst."""
+    over = [row for row in loads(run) if float(row["share"]) > 1.0]
+    if not over:
+        return []
+    worst = over[0]
+    return [
+        f"In {len(over)} place{'s' * (len(over) > 1)} the hand bears more than it may; the worst: {worst['where']}, "
+        f"{worst['what']} of {worst['load']} {worst['unit']} in {worst['pose']} ({worst['case']}), "
+        f"{worst['limit']} {worst['unit']} are allowed."
+    ]
 
 
 def torque_warnings(run: Run) -> list[str]:

@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 
 from fpcad.look.built import (
+    SHOWN_LOADS,
     Row,
     check_warnings,
     checks,
+    load_warnings,
     loads,
     parts_list,
     refusals,
@@ -60,7 +62,9 @@ class Summary:
     checks: list[Row]
     """What the gates found on the chosen hand."""
     loads: list[Row]
-    """What its parts bear along the trajectories."""
+    """What its parts bear along the trajectories, the heaviest shares."""
+    load_count: int
+    """How many there are in all."""
     logs: list[tuple[str, tuple[tuple[str, str], ...]]]
     """Runs on motors with their facts."""
     warnings: list[str]
@@ -70,7 +74,8 @@ def summarize(
     run: Run, document: dict[str, Any], logs: Sequence[RunLog] = (), more: Sequence[str] = ()
 ) -> Summary:
     """The summary of a run and of what its page leaves out; `more` are warnings to add."""
-    warnings = [*run.warnings, *check_warnings(run), *torque_warnings(run), *more]
+    told = (*load_warnings(run), *torque_warnings(run), *check_warnings(run))
+    warnings = [*run.warnings, *told, *more]
     if left_out := document["thin"]["left_out"]:
         warnings.append(f"{left_out} hands of the front are on this page without their paths.")
     return Summary(
@@ -82,7 +87,8 @@ def summarize(
         refusals=refusals(run),
         parts=parts_list(run),
         checks=checks(run),
-        loads=loads(run),
+        loads=loads(run)[:SHOWN_LOADS],
+        load_count=len(loads(run)),
         logs=[(log.name, log.facts) for log in logs],
         warnings=warnings,
     )

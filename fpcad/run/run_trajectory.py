@@ -227,9 +227,9 @@ def controller_line(
             yield transport
         return
     rate = clock_rate(port)
-    with start(limits, posture, clock_rate=rate, mishaps=mishaps) as device:  # noqa: SIM117
-        with closing(open_port(device.port)) as transport:
-            yield transport
+    started = start(limits, posture, clock_rate=rate, mishaps=mishaps)
+    with started as device, closing(open_port(device.port)) as transport:
+        yield transport
 
 
 def clock_rate(port: str) -> float:

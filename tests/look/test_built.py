@@ -70,7 +70,11 @@ def test_loads_are_listed_the_heaviest_first(exported: Run):
     write_whole(exported.folder / "parts" / "loads.csv", text)
     assert [row["where"] for row in loads(exported)] == ["IP ball MR63", "m1 strand"]
     told = summarize(exported, build_document(exported)[0])
-    assert told.loads == loads(exported)
+    assert told.loads == loads(exported) and told.load_count == 2
+    assert told.warnings[0] == (
+        "In 1 place the hand bears more than it may; the worst: IP ball MR63, bearing of 111 N in "
+        "poke (gripping), 74 N are allowed."
+    )
 
 
 def test_what_was_left_by_an_export_that_is_not_done_is_not_told(exported: Run):

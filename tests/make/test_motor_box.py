@@ -239,9 +239,12 @@ def test_the_back_is_a_flange_for_the_robot(built):
     assert back.bounds[1, 2] - face < box.pilot_mm[1]
 
 
+def area(radius):
+    return math.pi * radius**2
+
+
 def test_the_spool_has_its_closed_form_volume(built):
     s = built.box.spool
-    area = lambda radius: math.pi * radius**2  # noqa: E731
     drum = area(s.root) * (s.height - s.flange_height) + area(s.flange) * s.flange_height
     lips = 2 * s.lip * (area(s.rim) - area(s.root))
     knots = area(1.4) * (2 * s.height - s.flexor_z - s.extensor_z + 0.8)
