@@ -1,1 +1,1 @@
-(()=>{var o=()=>new Promise(e=>requestAnimationFrame(()=>setTimeout(e)));window.fpcadPainted=o();})();
+(()=>{var e=()=>new Promise(t=>requestAnimationFrame(()=>setTimeout(t)));window.fpcadPainted=e();})();

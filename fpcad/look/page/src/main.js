@@ -10,7 +10,7 @@ import { Numbers } from "./numbers.js";
 import { Parallel } from "./parallel.js";
 import { Player } from "./player.js";
 import { Scatter } from "./scatter.js";
-import { shown } from "./shown.js";
+import { settled } from "./shown.js";
 import { State } from "./state.js";
 import { onThemeChange } from "./theme.js";
 import { readRest, readRun } from "./data.js";
@@ -35,9 +35,10 @@ async function start() {
   new Numbers(at("numbers"), state);
   bindControls(run, state);
   performance.mark("fpcad:answers"); // figures are drawn as they come into sight
-  await shown();
-  const whole = readRest(run);
+  await settled(state); // each step to 3D takes long where graphics are emulated: a hand picked between is shown first
   const { Stage, GLTFExporter } = load3d();
+  const whole = readRest(run);
+  await settled(state);
   const open = (host) => openStage(host, run, Stage);
   const stage = run.candidates.count ? open(at("stage")) : null;
   const player = run.candidates.count ? new Player(at("player"), state, stage) : null;
