@@ -105,6 +105,13 @@ def test_a_finished_build_is_up_to_date(built_clay):
     assert {record["status"] for record in manifest["stages"].values()} == {"done"}
 
 
+@pytest.mark.parametrize("pose", ["carve", "poke", "press"])
+def test_every_trajectory_passes_the_checks_before_the_port_is_opened(built_clay, pose):
+    spec, build = built_clay / "spec.yaml", built_clay.parent
+    code, _, err = fpcad("run-trajectory", spec, "--build", build, "--pose", pose, "--dry-run")
+    assert (code, err) == (0, "")
+
+
 def test_a_trajectory_runs_in_the_simulated_controller(built_clay):
     spec, build = built_clay / "spec.yaml", built_clay.parent
     run = ("run-trajectory", spec, "--build", build, "--pose", "poke", "--json", "--port")

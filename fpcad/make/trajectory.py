@@ -10,13 +10,14 @@ from scipy.interpolate import BPoly
 
 from fpcad.errors import MakeError
 from fpcad.make.grip import ContactLink, Grip
-from fpcad.make.quintic import Motion, MotionLimits, pressure, quintics, slowed
+from fpcad.make.limits import joint_ranges, motion_limits
+from fpcad.make.quintic import Motion, MotionLimits, Offset, pressure, quintics, slowed
 from fpcad.make.refine import ContactCurve, Leg, Project, contact_curve, legs, limit_excess
 from fpcad.make.timing import TimeLaw, clock_cells, fastest_law
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
 from fpcad.spec.templates import TEMPLATES
-from fpcad.units import M_PER_MM, RAD_PER_DEG
+from fpcad.units import M_PER_MM
 from fpcad.wield.path import WieldingPath
 
 Array = NDArray[np.float64]
@@ -88,6 +89,13 @@ class Trajectory:
         """Time from rest at the pose to rest at the pose."""
         return float(self.time_s[-1])
 
+    def grip_speed_rad_s(self) -> float:
+        """How fast the grip's goals move against the joints at most; they go evenly between knots."""
+        if self.position_preload_rad is None:
+            return 0.0
+        offset = np.diff(self.position_preload_rad - self.position_rad, axis=0)
+        return float((np.abs(offset) / np.diff(self.time_s)[:, None]).max(initial=0.0))
+
     def joints(self) -> BPoly:
         """Quintics over time [s]: positions (n_joints,) [rad]; derivatives by its `derivative`."""
         return quintics(
@@ -101,6 +109,7 @@ def build_trajectory(
     geometry: HandGeometry,
     project: Project,
     joint_speed_limit: Array,
+    grip_offset: Offset | None = None,
 ) -> Trajectory:
     """From rest at the pose to the plus end, back, to the minus end, back, to rest at the pose.
 
@@ -110,6 +119,8 @@ def build_trajectory(
         geometry: the hand that the path belongs to.
         project: gives the exact contact posture (n,) [rad] nearest to a guess (n,) at a tool angle.
         joint_speed_limit: (n,) or (n_fingers, n_joints) what the motors reach [rad/s].
+        grip_offset: how far the grip's goals will lie beyond the joints, so that they too keep to
+            their speed; without it, they are not looked at.
 
     Raises:
         MakeError: contact cannot be kept along the path.
@@ -117,36 +128,29 @@ def build_trajectory(
     pose = spec.poses[path.pose]
     contacts = tuple(ContactLink(contact.finger, contact.link) for contact in pose.contacts)
     grip = Grip(geometry, spec.tool, pose.turning, path.hand_in_tool, contacts)
-    limits = _motion_limits(spec, joint_speed_limit)
-    ranges = _joint_ranges(spec)
+    limits = motion_limits(spec, joint_speed_limit)
+    ranges = joint_ranges(spec)
     rounds = []
     for leg in legs(path):
         curve = contact_curve(leg, grip, project, ranges)
-        motion = _timed(leg, curve, grip, ranges, limits)
+        offset = None if grip_offset is None else _along(leg, grip_offset)
+        motion = _timed(leg, curve, grip, ranges, limits, offset)
         rounds.append(_there_and_back(motion, leg.direction))
     return _named(spec, grip, _joined(rounds) if rounds else _resting(path))
 
 
-def _motion_limits(spec: Spec, joint_speed_limit: Array) -> MotionLimits:
-    motors = np.asarray(joint_speed_limit, dtype=float).ravel()
-    return MotionLimits(
-        tool_speed=spec.motion.tool_speed_deg_s * RAD_PER_DEG,
-        joint_speed=np.minimum(spec.motion.joint_speed_deg_s * RAD_PER_DEG, motors),
-        joint_acceleration=np.full(
-            motors.shape, spec.motion.joint_acceleration_deg_s2 * RAD_PER_DEG
-        ),
-    )
-
-
-def _joint_ranges(spec: Spec) -> Array:
-    """(2, n_joints) least and greatest angles [rad], finger by finger."""
-    names = TEMPLATES[spec.hand.template]
-    one = np.array([spec.hand.joint_limits_deg[joint] for joint in names.joints]).T * RAD_PER_DEG
-    return np.tile(one, len(names.fingers))
+def _along(leg: Leg, offset: Offset) -> Offset:
+    """The grip's offset over a leg's own turn, which is never negative."""
+    return lambda turn: offset(leg.direction * turn)
 
 
 def _timed(
-    leg: Leg, curve: ContactCurve, grip: Grip, ranges: Array, limits: MotionLimits
+    leg: Leg,
+    curve: ContactCurve,
+    grip: Grip,
+    ranges: Array,
+    limits: MotionLimits,
+    offset: Offset | None,
 ) -> Motion:
     """The fastest motion along a leg; where its quintics pass a limit, that cell is slowed."""
     usable = np.ones(clock_cells(curve))
@@ -154,7 +158,7 @@ def _timed(
         law = fastest_law(curve, limits, usable)
         clock = _in_contact(law, len(usable), leg, grip, ranges)
         motion = law.at(clock)
-        pressed = pressure(motion, limits)
+        pressed = pressure(motion, limits, offset)
         if pressed.max() <= 1.0 + PRESSURE_TOLERANCE:
             break
         cells = ((clock[:-1] + clock[1:]) / 2 / law.ramp.end * len(usable)).astype(int)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fpcad.run.framing import PROTOCOL_VERSION
 from fpcad.run.knots import BUFFER_KNOTS
-from fpcad.run.limits import JointLimits, to_counts
+from fpcad.run.limits import PRELOAD_LIMIT_RAD, PRELOAD_SPEED_RAD_S, JointLimits, to_counts
 from fpcad.run.motor_limits import MotorLimits, motor_limits_of
 from fpcad.run.transmission import Transmission, transmission_of
 
@@ -37,9 +37,9 @@ class FirmwareSetup:
     """Highest temperature of one motor; 0: not guarded."""
     hold_ma: int = 0
     """Largest current of one motor while the hand holds; 0: as always."""
-    preload_limit_rad: float = 0.5
+    preload_limit_rad: float = PRELOAD_LIMIT_RAD
     """Largest angle that a grip's goals may lie beyond the path."""
-    preload_rate_rad_s: float = 1.0
+    preload_rate_rad_s: float = PRELOAD_SPEED_RAD_S
     end_stops_rad: float = 0.03
     """How far the joints' end stops lie beyond the limits."""
     homing_speed_rad_s: float = 0.5

@@ -20,6 +20,10 @@ Array = NDArray[np.float64]
 COUNTS_PER_UNIT = 1e6
 """Counts of the wire's fixed point: 1 urad, 1 urad/s, 1 urad/s^2."""
 _LARGEST_COUNT = 2**31 - 1
+PRELOAD_LIMIT_RAD = 0.5
+"""Largest angle that a grip's goals may lie beyond the joints."""
+PRELOAD_SPEED_RAD_S = 1.0
+"""How fast they may move against the joints."""
 
 
 @dataclass(frozen=True)

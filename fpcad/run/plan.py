@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fpcad.run.driver import Sample
 from fpcad.run.errors import LimitsError, StartTooFar
 from fpcad.run.knots import approach, from_wire, to_wire
-from fpcad.run.limits import JointLimits
+from fpcad.run.limits import PRELOAD_LIMIT_RAD, PRELOAD_SPEED_RAD_S, JointLimits
 from fpcad.run.quintic import Knots
 from fpcad.run.trajectory import in_order, read_trajectory, repeated, require_within, slowed
 
@@ -22,9 +22,7 @@ OUTSIDE_RAD = float(np.radians(0.25))
 """How far beyond its limit a resting joint may be seen: encoders have steps of 0.09 degrees."""
 APPROACH_SHARE = 0.2
 """Part of the limits that the way to the start may use."""
-PRELOAD_LIMIT_RAD = 0.5
-"""Largest angle that a grip's goals may lie beyond the joints."""
-PRELOAD_RATE_RAD_S = 0.25
+CLOSING_RAD_S = 0.25
 """How fast the grip closes."""
 _SHORTEST_CLOSING_S = 0.2
 
@@ -45,7 +43,7 @@ def closed(knots: Knots, present_preload: Array) -> Knots:
     if knots.preload is None:
         return knots
     change = float(np.abs(knots.preload[0] - present_preload).max())
-    seconds = max(change / PRELOAD_RATE_RAD_S, _SHORTEST_CLOSING_S)
+    seconds = max(change / CLOSING_RAD_S, _SHORTEST_CLOSING_S)
     return Knots(
         np.concatenate([[0.0], knots.time_s + seconds]),
         *(np.vstack([c[:1], c]) for c in (knots.position, knots.velocity, knots.acceleration)),
@@ -93,4 +91,12 @@ def _require_preload(knots: Knots, limits: JointLimits) -> None:
         raise LimitsError(
             f"{limits.names[worst]}: the grip's goal lies {largest[worst]:.3g} rad beyond the joint; "
             f"allowed is {PRELOAD_LIMIT_RAD:g} rad"
+        )
+    speed = np.abs(np.diff(knots.preload, axis=0) / np.diff(knots.time_s)[:, None])
+    segment, fastest = np.unravel_index(speed.argmax(), speed.shape)
+    if speed[segment, fastest] > PRELOAD_SPEED_RAD_S:
+        raise LimitsError(
+            f"{limits.names[fastest]}: the grip's goal moves at {speed[segment, fastest]:.3g} rad/s "
+            f"against the joint at {knots.time_s[segment]:.3f} s; allowed is "
+            f"{PRELOAD_SPEED_RAD_S:g} rad/s"
         )

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from fpcad.run.driver import Driver, Sample, Watch
 from fpcad.run.drivers.servo_types import ServoModel
-from fpcad.run.limits import JointLimits
-from fpcad.run.plan import PRELOAD_LIMIT_RAD, from_present, resting_within
+from fpcad.run.limits import PRELOAD_LIMIT_RAD, JointLimits
+from fpcad.run.plan import from_present, resting_within
 from fpcad.run.pull_test import NOD_RAD, Slack, leading
 from fpcad.run.quintic import Knots
 from fpcad.run.transmission import Transmission

@@ -46,6 +46,8 @@ class Motion(SpecModel):
     """Largest speed of a joint [deg/s]."""
     joint_acceleration_deg_s2: Positive = 720.0
     """Largest acceleration of a joint [deg/s^2]."""
+    grip_speed_deg_s: Annotated[float, Field(gt=0, le=50)] = 45.0
+    """How fast a grip's goals may move against the joints [deg/s]; firmware refuses 57."""
 
 
 class Print(SpecModel):

@@ -282,3 +282,24 @@ def test_failed_write_leaves_the_old_file(carve: Trajectory, tmp_path: Path, mon
     with pytest.raises(OSError, match="disk full"):
         write_trajectory(carve, file, STAMP)
     assert file.read_text() == "old" and list(tmp_path.iterdir()) == [file]
+
+
+def test_a_grip_whose_goals_would_jump_slows_the_motion_there():
+    hand = CASES["kinks"]
+    path, loose = hand.path(20, 25), build(hand)
+    end = np.abs(loose.tool.angle_rad).max()
+
+    def goals(turn):
+        """A step of 0.2 rad about the middle of the way, for every joint."""
+        return np.tile(0.1 * np.tanh((np.abs(turn) - end / 2) / 0.02)[:, None], 12)
+
+    paced = build_trajectory(path, hand.spec, hand.geometry, hand.project, MOTOR_SPEED, goals)
+    allowed = hand.spec.motion.grip_speed_deg_s * RAD_PER_DEG
+
+    def speed(trajectory):
+        steps = np.abs(np.diff(goals(trajectory.tool.angle_rad), axis=0))
+        return (steps / np.diff(trajectory.time_s)[:, None]).max()
+
+    assert speed(loose) > 2 * allowed
+    assert 0.9 * allowed < speed(paced) <= allowed * (1 + 1e-9)
+    assert paced.duration_s < loose.duration_s + 4.0  # the rest of the way is as fast as before

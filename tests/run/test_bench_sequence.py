@@ -1,6 +1,7 @@
 """The sequence of a bench test: to the start, wait for the tool, close with preload, run; and its table."""
 
 import csv
+import json
 import signal
 
 import numpy as np
@@ -81,6 +82,15 @@ def test_controllers_close_the_grip_as_well(tmp_path, port):
 def test_a_grip_beyond_its_bound_is_refused_before_anything_is_sent(tmp_path):
     with pytest.raises(LimitsError, match="the grip's goal lies"):
         run_trajectory(gripping(tmp_path, np.full(12, 0.6)), hand_limits(), "sim")
+
+
+def test_a_grip_that_comes_too_fast_is_refused_before_anything_is_sent(tmp_path):
+    file = gripping(tmp_path)
+    document = json.loads(file.read_text())
+    document["position_preload_rad"][1][4] += 0.4
+    file.write_text(json.dumps(document))
+    with pytest.raises(LimitsError, match=f"{NAMES[4]}: the grip's goal moves at .* rad/s"):
+        run_trajectory(file, hand_limits(), "sim")
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet"])

@@ -9,7 +9,12 @@ from numpy.typing import NDArray
 
 from fpcad.run.acceptance import first_violation
 from fpcad.run.knots import from_wire
-from fpcad.run.limits import COUNTS_PER_UNIT, JointLimits
+from fpcad.run.limits import (
+    COUNTS_PER_UNIT,
+    PRELOAD_LIMIT_RAD,
+    PRELOAD_SPEED_RAD_S,
+    JointLimits,
+)
 from fpcad.run.messages import PRELOAD_URAD, Knot, Reason
 from fpcad.run.motor_limits import MotorLimits, first_motor_violation
 from fpcad.run.quintic import evaluate_polynomial, segment_coefficients
@@ -21,8 +26,6 @@ START_DISTANCE_RAD = np.radians(2.0)
 """Largest distance between the first knot and where the joints are."""
 _STARVING_US = 200_000
 """Path left at which waiting for more knots must end: enough to slow down on."""
-PRELOAD_LIMIT_RAD = 0.5
-PRELOAD_RATE_RAD_S = 1.0
 _PRELOAD_STEP_RAD = 0.002
 """A preload that differs by less counts as unchanged."""
 SEGMENT_US = (3_000, 10_000_000)
@@ -211,7 +214,7 @@ class PathFollower:
         if violation is not None:
             return violation.reason, violation.joint
         seconds = (knot.t_us - self._knots[-1].t_us) / 1e6
-        change = PRELOAD_RATE_RAD_S * seconds + PRELOAD_URAD / COUNTS_PER_UNIT
+        change = PRELOAD_SPEED_RAD_S * seconds + PRELOAD_URAD / COUNTS_PER_UNIT
         return _preload_refusal(knot, _preload(self._knots[-1]), change)
 
 
