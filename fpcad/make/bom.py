@@ -11,13 +11,15 @@ from pathlib import Path
 
 from fpcad.make.parts.assembly import Assembly, BoughtItem
 from fpcad.make.parts.catalogue import TABLES, Tendon, lookup, table
+from fpcad.make.parts.materials import matters
 from fpcad.make.parts.mcp_dimensions import TENDON
+from fpcad.make.parts.part import Part
 from fpcad.make.power import power
 from fpcad.spec.catalogue import motor
+from fpcad.spec.hardware import Print
 from fpcad.spec.schema import Spec
 from fpcad.store import write_whole
 
-MATERIALS = {"endoskeleton": "rigid (PLA or the like)", "skin": "flexible (TPE)"}
 MOTORS = "motors"
 
 
@@ -27,7 +29,7 @@ class BomRow:
 
     item: str
     kind: str
-    """`printed` or `bought`."""
+    """`printed`, `made to order` or `bought`."""
     count: int
     size: str
     """Size of a bought item."""
@@ -58,26 +60,7 @@ def bill_of_materials(
         hours: print time of one piece by part, of those that were sliced.
         tendons_mm: what is cut of the tendon [mm], one piece each.
     """
-    density = {
-        "endoskeleton": spec.print.bone_density_g_cm3,
-        "skin": spec.print.skin_density_g_cm3,
-    }
-    printed = [
-        BomRow(
-            item=part.name,
-            kind="printed",
-            count=part.count,
-            size="",
-            material=MATERIALS[part.material],
-            file=f"print/{part.name}.3mf",
-            mass_g=f"{part.mesh.volume * density[part.material] * 1e-3:.2f}",
-            volume_cm3=f"{part.mesh.volume * 1e-3:.3f}",
-            hours=f"{hours[part.name]:.2f}" if part.name in hours else "",
-            source="",
-            note="mass as if printed solid",
-        )
-        for part in assembly.parts
-    ]
+    printed = [_made(part, spec.print, hours.get(part.name)) for part in assembly.parts]
     bought = [_item(item) for item in assembly.bought]
     if not any(item.kind == MOTORS for item in assembly.bought):
         row = motor(spec.motors.type)
@@ -87,6 +70,24 @@ def bill_of_materials(
     if tendons_mm:
         bought.append(_tendon(tendons_mm))
     return [*printed, *bought, *_electrical(spec, 3 * fingers)]
+
+
+def _made(part: Part, settings: Print, hours: float | None) -> BomRow:
+    """A part that is printed, or made to order."""
+    matter, ordered = matters(settings)[part.material], part.material == "metal"
+    return BomRow(
+        item=part.name,
+        kind="made to order" if ordered else "printed",
+        count=part.count,
+        size="",
+        material=matter.name,
+        file=f"step/{part.name}.step" if ordered else f"print/{part.name}.3mf",
+        mass_g=f"{part.mesh.volume * matter.density_g_cm3 * 1e-3:.2f}",
+        volume_cm3=f"{part.mesh.volume * 1e-3:.3f}",
+        hours="" if hours is None else f"{hours:.2f}",
+        source="",
+        note="ream the holes to the pins" if ordered else "mass as if printed solid",
+    )
 
 
 def bom_csv(rows: Sequence[BomRow]) -> str:

@@ -27,6 +27,7 @@ from fpcad.make.loads.table import loads_csv
 from fpcad.make.mesh import in_metres, stl_bytes
 from fpcad.make.parts.assembly import Assembly, Progress, make_assembly
 from fpcad.make.parts.dimensions import finger_dimensions
+from fpcad.make.parts.materials import densities
 from fpcad.make.parts.mounting import mounting
 from fpcad.make.parts.tendon_lengths import pieces_to_cut
 from fpcad.make.stand.stand import GATE as JIG_GATE
@@ -137,10 +138,7 @@ def _stand(
 
 def link_bodies(spec: Spec, assembly: Assembly) -> dict[str, LinkBody]:
     """Inertia and visuals of each link, from the parts and bought items that it is made of."""
-    density = {
-        "endoskeleton": spec.print.bone_density_g_cm3,
-        "skin": spec.print.skin_density_g_cm3,
-    }
+    density = densities(spec.print)
     bodies = {}
     for link in dict.fromkeys(part.link for part in assembly.parts):
         own = [part for part in assembly.parts if part.link == link]

@@ -1,4 +1,4 @@
-"""The motors and flanges that a spec may name, read from data/motors.csv and data/flanges.csv."""
+"""The motors, flanges and metals that a spec may name, read from data/*.csv."""
 
 from __future__ import annotations
 
@@ -47,6 +47,12 @@ def motor_types() -> tuple[str, ...]:
 def flange_sizes() -> tuple[str, ...]:
     """Names of all flanges in the order of their table; their sizes are read where they are made."""
     return tuple(row["size"] for row in _table("flanges"))
+
+
+@cache
+def metal_sizes() -> tuple[str, ...]:
+    """Names of all metals in the order of their table."""
+    return tuple(row["size"] for row in _table("metals"))
 
 
 @cache

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from fpcad.spec.catalogue import flange_sizes, motor_types
+from fpcad.spec.catalogue import flange_sizes, metal_sizes, motor_types
 from fpcad.spec.checks_initial import check_initial
 from fpcad.spec.checks_pose import check_poses
 from fpcad.spec.faults import KeyPath, one_of, quoted
 from fpcad.spec.hand import Hand, PalmCapsule, ParameterRange
-from fpcad.spec.hardware import Motors
+from fpcad.spec.hardware import RIGID, Motors
 from fpcad.spec.mount import Mount
 from fpcad.spec.names import check_exact_keys, span
 from fpcad.spec.parts import INTERVAL, PALM_PRIMITIVE, Finding, Parts
@@ -39,6 +39,7 @@ def cross_check(parts: Parts) -> Iterator[Finding]:
     yield from _check_sampling(parts)
     yield from _check_motors(parts)
     yield from _check_mount(parts)
+    yield from _check_cross(parts)
 
 
 def _check_parameters(parts: Parts, names: TemplateNames) -> Iterator[Finding]:
@@ -118,6 +119,13 @@ def _check_mount(parts: Parts) -> Iterator[Finding]:
     flange = parts.get_or(("mount", "flange"), str, Mount.model_fields["flange"].default)
     if flange is not None and flange not in flange_sizes():
         yield Finding(("mount", "flange"), one_of(flange_sizes(), flange))
+
+
+def _check_cross(parts: Parts) -> Iterator[Finding]:
+    known = (RIGID, *metal_sizes())
+    named = parts.get_or(("print", "cross_material"), str, RIGID)
+    if named is not None and named not in known:
+        yield Finding(("print", "cross_material"), one_of(known, named))
 
 
 def _check_wiring(parts: Parts, names: TemplateNames) -> Iterator[Finding]:

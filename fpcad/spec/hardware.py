@@ -7,8 +7,11 @@ from typing import Annotated
 from pydantic import Field
 
 from fpcad.spec.base import NonNegative, Positive, SpecModel
-from fpcad.spec.catalogue import motor_types
+from fpcad.spec.catalogue import metal_sizes, motor_types
 from fpcad.spec.wiring import Wiring
+
+RIGID = "rigid"
+"""Of what bones are printed from."""
 
 
 class Transmission(SpecModel):
@@ -79,8 +82,13 @@ class Print(SpecModel):
     bone_bearing_mpa: Positive = 36.4
     """Pressure [MPa] at which a pin crushes a rigid part; the compressive strength of PLA printed half
     full by default (Scientific Reports 2025, doi 10.1038/s41598-025-94446-8)."""
+    cross_material: Annotated[str, Field(json_schema_extra={"enum": [RIGID, *metal_sizes()]})] = (
+        "17-4PH"
+    )
+    """What the MCP crosses are of: a metal, made to order from parts/step/mcp_cross.step, or `rigid`,
+    printed like the bones, which does not bear the abduction pins of a strong grip (docs/loads.md)."""
     safety_factor: Annotated[float, Field(ge=1)] = 2.0
-    """What both strengths are divided by before loads are compared with them [-]."""
+    """What strengths are divided by before loads are compared with them [-]."""
     overhang_deg: Annotated[float, Field(ge=0, lt=90)] = 45.0
     """Largest angle from the vertical at which a face is printed without support [deg]."""
     mesh_tolerance_mm: Annotated[float, Field(gt=0, le=1)] = 0.05

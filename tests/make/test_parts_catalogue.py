@@ -10,6 +10,7 @@ from fpcad.make.parts.catalogue import (
     Bearing,
     Flange,
     Insert,
+    Metal,
     MotorBody,
     Nut,
     Pin,
@@ -53,6 +54,8 @@ def solid_of(row: object) -> Solid:
             return disc.fuse(
                 rod((0, 0, 0), (0, 0, row.disc_mm + row.boss_height_mm), row.boss_mm / 2)
             )
+        case Metal():
+            return box((0, 0, 0), (10, 10, 10))
         case MotorBody():
             return box((0, 0, 0), (row.width_mm, row.height_mm, row.depth_mm))
     raise AssertionError(f"no solid for {row}")

@@ -52,7 +52,7 @@ def test_ip_strands_pass_the_turning_cross(values):
     d = finger_dimensions(CLAY, geometry)
     for finger in geometry.fingers:
         for strand in strands(d, geometry.T_palm_root[finger])[4:]:
-            low, high = free_tangents(d.mcp, d.mcp_flex, strand.sense)
+            low, high = free_tangents(d.mcp, d.mcp_flex, d.widest_abduction, strand.sense)
             middle = (low + high) / 2
             off = math.remainder(strand.tangent_angle - middle, 2 * math.pi)
             assert abs(off) <= (high - low) / 2 + 1e-9

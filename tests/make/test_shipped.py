@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fpcad.make.documents.inventory import read_inventory
 from fpcad.make.parts.assembly import Assembly
+from fpcad.make.parts.catalogue import Metal, lookup
 from fpcad.make.parts.dimensions import Dimensions, finger_dimensions
 from fpcad.pipeline.finished import finished_hand
 
@@ -138,6 +139,7 @@ def links(built_clay: Path) -> dict[str, tuple[Mass, Mass]]:
     spec, _ = finished_hand(built_clay)
     shipped: Assembly = read_inventory(built_clay / "parts")
     grams = {"endoskeleton": spec.print.bone_density_g_cm3, "skin": spec.print.skin_density_g_cm3}
+    grams["metal"] = lookup("metals", Metal, spec.print.cross_material).density_g_cm3
     found = {}
     for link in LINKS:
         meshes, solids = [], []

@@ -32,7 +32,11 @@ Array = NDArray[np.float64]
 
 BASE_LINK = "palm"
 MOTORS_OF_A_FINGER = ("m1", "m2", "m3")
-COLOURS = {"endoskeleton": (0.92, 0.91, 0.87, 1.0), "skin": (0.88, 0.45, 0.30, 1.0)}
+COLOURS = {
+    "endoskeleton": (0.92, 0.91, 0.87, 1.0),
+    "skin": (0.88, 0.45, 0.30, 1.0),
+    "metal": (0.62, 0.64, 0.67, 1.0),
+}
 """Red, green, blue, opacity of the printed materials."""
 SOFT_MARGIN_RAD = 1e-3
 """How far soft limits lie inside the hard ones: a tenth of a millimetre at the fingertip.

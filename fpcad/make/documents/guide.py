@@ -128,6 +128,8 @@ def _print_table(spec: Spec, assembly: Assembly) -> Iterator[str]:
     yield "| part | count | material | height mm | needs support mm2 | stands on mm2 |"
     yield "|---|---|---|---|---|---|"
     for part in assembly.parts:
+        if part.material == "metal":
+            continue
         laid = part_orientation(part, spec.print)
         figures = f"{laid.height_mm:.1f} | {laid.overhang_mm2:.0f} | {laid.base_mm2:.0f}"
         yield f"| {part.name} | {part.count} | {part.material} | {figures} |"

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 Piece = tuple[trimesh.Trimesh, str]
 """A mesh [mm] and its colour."""
 
-COLOURS = {"endoskeleton": "#d8d2bf", "skin": "#e07350"}
+COLOURS = {"endoskeleton": "#d8d2bf", "skin": "#e07350", "metal": "#9ea3ab"}
 BOUGHT_COLOUR = "#8a97a6"
 SIZE = (1400, 900)
 GAP_MM = 12.0

@@ -26,13 +26,15 @@ from fpcad.spec.schema import Spec
 
 
 def check_part(spec: Spec, part: Part) -> list[Finding]:
-    """What the gates say of one printed part: solid, mesh, walls, bed, overhang."""
-    least = spec.print.bone_wall_mm if part.material == "endoskeleton" else spec.print.skin_wall_mm
+    """What the gates say of one part: solid, mesh, walls; of a printed one bed and overhang too."""
+    least = spec.print.skin_wall_mm if part.material == "skin" else spec.print.bone_wall_mm
     found = check_solid(part.name, part.solid) + check_mesh(part.name, part.mesh)
     if found:  # nothing can be measured on a broken mesh
         return found
-    laid = part_orientation(part, spec.print)
     found += check_walls(part.name, part.mesh, least)
+    if part.material == "metal":  # whoever makes it decides how it lies
+        return found
+    laid = part_orientation(part, spec.print)
     found += check_bed(part.name, part.mesh, laid, spec.print)
     return found + check_overhang(part.name, part.mesh, laid)
 

@@ -52,7 +52,7 @@ def bar_plan(geometry: HandGeometry) -> Array:
 
 def skin_share(parts: Sequence[Part], points: Array) -> float:
     """Of the points (n, 2), the share above which something palmar lies and the first of it is skin."""
-    nearest = {material: np.full(len(points), np.inf) for material in ("endoskeleton", "skin")}
+    skin, rigid = (np.full(len(points), np.inf) for _ in range(2))
     for part in parts:
         if part.link != FIXED_LINK:
             continue
@@ -61,10 +61,10 @@ def skin_share(parts: Sequence[Part], points: Array) -> float:
         starts = np.column_stack([points, np.full(len(points), low)])
         up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
         hits, ray, _ = mesh.ray.intersects_location(starts, up, multiple_hits=False)
-        height = nearest[part.material]
+        height = skin if part.material == "skin" else rigid
         height[ray] = np.minimum(height[ray], hits[:, 2])
-    seen = np.isfinite(nearest["skin"]) | np.isfinite(nearest["endoskeleton"])
-    return float((nearest["skin"] < nearest["endoskeleton"])[seen].mean()) if seen.any() else 0.0
+    seen = np.isfinite(skin) | np.isfinite(rigid)
+    return float((skin < rigid)[seen].mean()) if seen.any() else 0.0
 
 
 def _plan_distance(points: Array, start: Array, end: Array) -> Array:

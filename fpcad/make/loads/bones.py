@@ -18,7 +18,7 @@ from fpcad.make.loads.sections import Section, sections
 from fpcad.make.loads.supports import Z
 from fpcad.make.parts.bone import ip_knot, prong_start
 from fpcad.make.parts.dimensions import Dimensions
-from fpcad.make.parts.mcp_dimensions import neck_start
+from fpcad.make.parts.mcp_clearances import neck_start
 
 Array = NDArray[np.float64]
 
@@ -85,8 +85,11 @@ class Bones:
             pushes = push(self._d, forces, joints)
             each = [section.stress_mpa(*pushes.about(section)) for section in cut]
             found[beam.where] = np.max(each, axis=0)
-        bridge = bridge_stress(self._d, self._bridges, forces)
-        return {**found, "bridge of the MCP cross": bridge}
+        return found
+
+    def bridge_stress(self, forces: FingerForces) -> Array:
+        """Larger stress (K,) [MPa] of the cross's two bridges."""
+        return bridge_stress(self._d, self._bridges, forces)
 
 
 def beams(d: Dimensions) -> list[Loaded]:

@@ -33,7 +33,7 @@ def load_findings(loads: Iterable[Load]) -> list[Finding]:
     return [_finding(load, gripping.get(kind)) for kind, load in worst.items()]
 
 
-PER_FINGER = ("strand", "bearing", "pin pressure", "pin bending", "bone")
+PER_FINGER = ("strand", "bearing", "pin pressure", "pin bending", "bone", "cross")
 """Kinds of which each part of a finger has its own finding."""
 
 

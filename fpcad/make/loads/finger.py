@@ -212,11 +212,11 @@ def _ears(d: Dimensions, places: Array, loads: Array) -> Array:
 
 
 def _ear_places(d: Dimensions) -> Array:
-    middle = (d.mcp.ear_inner + d.mcp.ear_outer) / 2
+    middle = d.mcp.ear_inner + d.mcp.axle_seat / 2
     return np.array([-middle, middle])
 
 
 def hub_places(d: Dimensions) -> tuple[float, float]:
     """Z of the middles of the proximal bone's hubs on the abduction pins: palmar, dorsal [mm]."""
     m = d.mcp
-    return -(m.disc_inner + m.hub_outer) / 2, (m.arm_inner + m.arm_outer) / 2
+    return -(m.disc_inner + m.pivot_outer) / 2, (m.arm_inner + m.pivot_outer) / 2

@@ -17,6 +17,7 @@ from fpcad.make.loads.table import ANY, Load
 from fpcad.make.parts.assembly import Assembly
 from fpcad.make.parts.catalogue import Tendon, lookup
 from fpcad.make.parts.dimensions import Dimensions, finger_dimensions
+from fpcad.make.parts.materials import bone_strength, cross_strength
 from fpcad.make.parts.mcp_dimensions import TENDON
 from fpcad.make.trajectory import Trajectory
 from fpcad.model.geometry import HandGeometry
@@ -65,7 +66,7 @@ def _finger_loads(
         forces = finger_forces(d, geometry.T_palm_root[finger], touched, tension)
         borne = [
             *_strands(tension),
-            *finger_pins(d, forces, spec.print.bone_bearing_mpa / spec.print.safety_factor),
+            *finger_pins(d, forces, spec.print),
             *_stresses(spec.print, bones, forces, touched.joints_rad),
         ]
         for item in borne:
@@ -100,9 +101,13 @@ def _strands(tension: Tensions) -> Iterator[Borne]:
 def _stresses(
     settings: Print, bones: Bones, forces: FingerForces, joints: Array
 ) -> Iterator[Borne]:
-    limit = settings.bone_strength_mpa / settings.safety_factor
+    limit = bone_strength(settings).stress_mpa
     for where, stress in bones.stresses(forces, joints).items():
         yield Borne("bone", where, stress, limit, "MPa")
+    bridge = bones.bridge_stress(forces)
+    yield Borne(
+        "cross", "bridge of the MCP cross", bridge, cross_strength(settings).stress_mpa, "MPa"
+    )
 
 
 def _worst(loads: Iterator[Load]) -> list[Load]:

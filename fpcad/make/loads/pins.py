@@ -1,4 +1,4 @@
-"""Bearings and pins of one finger: what they carry, how they bend, how hard they push on printed plastic."""
+"""Bearings and pins of one finger: what they carry, how they bend, how hard they push on what holds them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from fpcad.make.loads.finger import FingerForces, hub_places
 from fpcad.make.loads.supports import X, Y, Z, beam_moment, on_axis
 from fpcad.make.parts.catalogue import Pin, lookup
 from fpcad.make.parts.dimensions import Dimensions
+from fpcad.make.parts.materials import bone_strength, cross_strength
 from fpcad.make.parts.mcp_dimensions import AXLE, PIVOT
+from fpcad.spec.hardware import Print
 
 Array = NDArray[np.float64]
 
@@ -33,11 +35,12 @@ class Borne:
     unit: str
 
 
-def finger_pins(d: Dimensions, forces: FingerForces, pressure_mpa: float) -> list[Borne]:
-    """Everything that turns or sits on pins in a finger; `pressure_mpa` is what the plastic allows."""
+def finger_pins(d: Dimensions, forces: FingerForces, settings: Print) -> list[Borne]:
+    """Everything that turns or sits on pins in a finger."""
+    bone, cross = bone_strength(settings).pressure_mpa, cross_strength(settings).pressure_mpa
 
-    def pressure(where: str, value: Array) -> Borne:
-        return Borne("pin pressure", where, value, pressure_mpa, "MPa")
+    def pressure(where: str, value: Array, allowed: float = bone) -> Borne:
+        return Borne("pin pressure", where, value, allowed, "MPa")
 
     k, m = d.knuckle, d.mcp
     prong = k.prong_outer - k.prong_inner
@@ -50,15 +53,15 @@ def finger_pins(d: Dimensions, forces: FingerForces, pressure_mpa: float) -> lis
         pressure("palmar pin in the output pulley", _palmar_hub(d, forces)),
         pressure("dorsal pin in the arm", _dorsal_hub(d, forces)),
         *(
-            pressure(f"{name} pin in the cross", bridge_pressure(d, force, arm))
+            pressure(f"{name} pin in the cross", bridge_pressure(d, force, arm), cross)
             for name, force, arm in (
                 ("palmar", across(forces.hubs[:, 0], Z), -low),
                 ("dorsal", *_dorsal_pin(d, forces, high)),
             )
         ),
         _bending("abduction pins", PIVOT, pivot_moment(d, forces)),
-        pressure("axle in the cross", _cheeks(d, forces)),
-        pressure("axle in the palm", _larger(forces.ears) / (2 * m.axle * _ear(d))),
+        pressure("axle in the cross", _cheeks(d, forces), cross),
+        pressure("axle in the palm", _larger(forces.ears) / (2 * m.axle * m.axle_seat)),
         _bending("axle", AXLE, beam_moment(forces.axle_places, forces.axle_loads)),
     ]
     return found
@@ -105,10 +108,9 @@ def bridge_pressure(d: Dimensions, force: Array, arm_mm: Array | float) -> Array
 
     The pin's seat presses linearly: F / (d l) by the force, and 6 F e / (d l^2) by its lever e.
     """
-    m = d.mcp
-    length = m.bridge_outer - m.bridge_inner
-    lever = np.asarray(arm_mm) - (m.bridge_inner + m.bridge_outer) / 2
-    return force / (2 * m.pivot * length) * (1 + 6 * lever / length)
+    inner, outer = d.mcp.bridge_inner, d.mcp.bridge_outer
+    length, lever = outer - inner, np.asarray(arm_mm) - (inner + outer) / 2
+    return force / (2 * d.mcp.pivot * length) * (1 + 6 * lever / length)
 
 
 def bending_mpa(moment_nmm: Array, diameter_mm: float) -> Array:
@@ -132,12 +134,12 @@ def _bending(name: str, size: str, moment: Array) -> Borne:
 
 def _palmar_hub(d: Dimensions, forces: FingerForces) -> Array:
     m = d.mcp
-    return across(forces.hubs[:, 0], Z) / (2 * m.pivot * (m.hub_outer - m.disc_inner))
+    return across(forces.hubs[:, 0], Z) / (2 * m.pivot * (m.pivot_outer - m.disc_inner))
 
 
 def _dorsal_hub(d: Dimensions, forces: FingerForces) -> Array:
     m = d.mcp
-    return across(forces.hubs[:, 1], Z) / (2 * m.pivot * (m.arm_outer - m.arm_inner))
+    return across(forces.hubs[:, 1], Z) / (2 * m.pivot * (m.pivot_outer - m.arm_inner))
 
 
 def _dorsal_pin(d: Dimensions, forces: FingerForces, high: float) -> tuple[Array, Array]:
@@ -151,10 +153,6 @@ def _dorsal_pin(d: Dimensions, forces: FingerForces, high: float) -> tuple[Array
 def _cheeks(d: Dimensions, forces: FingerForces) -> Array:
     m = d.mcp
     return _larger(forces.cheeks) / (2 * m.axle * (m.cheek_outer - m.cheek_inner))
-
-
-def _ear(d: Dimensions) -> float:
-    return d.mcp.ear_outer - d.mcp.ear_inner
 
 
 def _larger(forces: Array) -> Array:

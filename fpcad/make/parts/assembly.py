@@ -19,6 +19,7 @@ from fpcad.make.parts.differential import idler_pulley, input_pulley, ip_drum, m
 from fpcad.make.parts.dimensions import Dimensions, finger_dimensions
 from fpcad.make.parts.flange import flange_solid
 from fpcad.make.parts.flange_dimensions import FlangeDimensions
+from fpcad.make.parts.materials import cross_material
 from fpcad.make.parts.mounting import mounting
 from fpcad.make.parts.palm import MOUNT_INSETS_MM, palm_solid
 from fpcad.make.parts.palm_pad import NAME as PAD
@@ -65,7 +66,7 @@ def _hand_parts(
 ) -> list[Part]:
     """Fingers, palm and flange; parts that fingers share are made once."""
     parts = []
-    for plan in _plans(geometry, flange):
+    for plan in _plans(geometry, flange, cross_material(spec.print)):
         progress(plan.name)
         solid, mesh = _made(plan, d, spec)
         count = len(plan.places) * (1 if plan.link == FIXED_LINK else len(geometry.fingers))
@@ -107,7 +108,7 @@ class _Plan:
     T_bed: Array = field(default_factory=lambda: np.eye(4))
 
 
-def _plans(geometry: HandGeometry, flange: FlangeDimensions) -> list[_Plan]:
+def _plans(geometry: HandGeometry, flange: FlangeDimensions, cross: Material) -> list[_Plan]:
     axis_up, on_end = turned("x", 90.0), turned("y", 90.0)
     palms = tuple(partial(palm_solid, geometry, flange, inset=inset) for inset in MOUNT_INSETS_MM)
     both_sides = (np.eye(4), turned("z", 180.0))
@@ -120,7 +121,7 @@ def _plans(geometry: HandGeometry, flange: FlangeDimensions) -> list[_Plan]:
             (partial(flange_solid, flange, geometry),),
         ),
         *_pad_plans(geometry, flange),
-        _Plan("mcp_cross", "mcp", "endoskeleton", (mcp_cross,), T_bed=on_end),
+        _Plan("mcp_cross", "mcp", cross, (mcp_cross,), T_bed=on_end),
         _Plan("input_pulley", "mcp", "endoskeleton", (input_pulley,), both_sides, axis_up),
         _Plan("idler_pulley", "mcp", "endoskeleton", (idler_pulley,)),
         _Plan("ip_drum", "mcp", "endoskeleton", (ip_drum,), T_bed=axis_up),

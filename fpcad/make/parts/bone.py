@@ -8,7 +8,13 @@ from fpcad.errors import MakeError
 from fpcad.make.parts import interlock
 from fpcad.make.parts.differential import abduction_plate
 from fpcad.make.parts.dimensions import PULLEY_RIM_MM, Dimensions
-from fpcad.make.parts.mcp_dimensions import beyond_pulleys, neck_half_width, neck_start
+from fpcad.make.parts.mcp_clearances import (
+    arm_outline,
+    beyond_pulleys,
+    neck_half_width,
+    neck_start,
+    spoke_back,
+)
 from fpcad.make.parts.solids import (
     FAR_MM,
     Solid,
@@ -16,6 +22,7 @@ from fpcad.make.parts.solids import (
     behind_bend,
     beyond_flat,
     box,
+    extruded,
     finger_core,
     mirrored_at,
     prism,
@@ -137,7 +144,8 @@ def _channels(d: Dimensions) -> list[Solid]:
     for side in (-1, 1):
         (x0, z0), (x1, z1) = ip_tangents(d, side)
         slope = (z1 - z0) / (x1 - x0)
-        start, end = (7.0, z0 + slope * (7.0 - x0)), (x1, z1)
+        near = d.mcp.disc_rim  # before the neck begins
+        start, end = (near, z0 + slope * (near - x0)), (x1, z1)
         found.append(rod((start[0], 0, start[1]), (end[0], 0, end[1]), d.channel))
         if d.bone - max(abs(z0), abs(z1)) - d.channel < THIN_MM:
             outline = [start, end, (x1, side * FAR_MM), (d.shaft_start, side * FAR_MM)]
@@ -185,7 +193,15 @@ def _palmar_disc(d: Dimensions) -> Solid:
     """The output pulley, fixed to the bone: its plate, a hub on the pin, a bar to the neck."""
     m = d.mcp
     hub = rod((0, 0, -m.disc_inner), (0, 0, -m.hub_outer), m.boss)
-    return union([abduction_plate(d, -1), hub, _bar(d, -m.hub_outer, -m.disc_lip, 0.0)])
+    bar = _bar(d, -m.hub_outer, -m.disc_lip, 0.0)
+    return union(
+        [
+            abduction_plate(d, -1),
+            hub,
+            bar,
+            _arm(d, m.pulley_side - m.strand, -m.hub_outer, -m.pulley_rim - m.gap),
+        ]
+    )
 
 
 def _dorsal_arm(d: Dimensions) -> Solid:
@@ -193,12 +209,22 @@ def _dorsal_arm(d: Dimensions) -> Solid:
     m = d.mcp
     hub = rod((0, 0, m.arm_inner), (0, 0, m.arm_outer), m.boss)
     step = _bar(d, m.bridge_outer + m.gap, m.arm_outer, m.disc_rim + m.gap)
-    return union([hub, _bar(d, m.arm_inner, m.arm_outer, 0.0), step])
+    return union([hub, _arm(d, m.pulley_side - m.strand, m.arm_inner, m.arm_outer), step])
+
+
+def _arm(d: Dimensions, beside: float, low: float, high: float) -> Solid:
+    """What carries a hub's load to the neck, where no pulley is in the way; `beside` it is a wall."""
+    arm = extruded(arm_outline(d.mcp, d.widest_abduction, beside), low, high)
+    return arm.fuse(_bar(d, low, high, 0.0)).intersect(ball((0, 0, 0), d.root - d.clearance))
 
 
 def _bar(d: Dimensions, low: float, high: float, start: float) -> Solid:
     half = neck_half_width(d.mcp, d.widest_abduction)
-    bar = box((start, -half, low), (d.root, half, high))
+    wide = max(start, spoke_back(d.mcp, d.widest_abduction))
+    hub = min(half, d.mcp.boss)
+    bar = box((start, -hub, low), (d.root, hub, high)).fuse(
+        box((wide, -half, low), (d.root, half, high))
+    )
     return bar.intersect(ball((0, 0, 0), d.root - d.clearance))
 
 

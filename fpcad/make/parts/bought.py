@@ -52,14 +52,14 @@ def finger_items(d: Dimensions, fingers: int) -> tuple[BoughtItem, ...]:
 
 def _axle(d: Dimensions, fingers: int) -> BoughtItem:
     pin = lookup("pins", Pin, AXLE)
-    return _pin("mcp_axle", pin, pin.longest(2 * d.mcp.ear_outer), "mcp", (_along_y(0.0),), fingers)
+    return _pin("mcp_axle", pin, d.mcp.axle_length, "mcp", (_along_y(0.0),), fingers)
 
 
 def _pivots(d: Dimensions, fingers: int) -> BoughtItem:
-    """One pin in the palmar bridge, one in the dorsal bridge; both end flush with the hubs."""
+    """One pin in the palmar bridge, one in the dorsal bridge; both begin at its inner face."""
     pin, m = lookup("pins", Pin, PIVOT), d.mcp
-    length = pin.longest(m.hub_outer - m.bridge_inner)
-    places = _along_z(length / 2 - m.hub_outer), _along_z(m.arm_outer - length / 2)
+    length = m.pivot_length
+    places = tuple(_along_z(side * (m.bridge_inner + length / 2)) for side in (-1, 1))
     return _pin("mcp_pivot", pin, length, "mcp", places, fingers)
 
 

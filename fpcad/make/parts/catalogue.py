@@ -130,6 +130,13 @@ class Tendon(Row):
     """EA: force per unit strain [N]."""
 
 
+class Metal(Row):
+    """What a part that is not printed at home is made of."""
+
+    density_g_cm3: float = Field(gt=0)
+    yield_mpa: float = Field(gt=0)
+
+
 class Tube(Row):
     """A tube that tendons run in."""
 
@@ -188,6 +195,7 @@ TABLES: dict[str, type[BaseModel]] = {
     "nuts": Nut,
     "tendons": Tendon,
     "tubes": Tube,
+    "metals": Metal,
     "flanges": Flange,
     "motor_bodies": MotorBody,
 }

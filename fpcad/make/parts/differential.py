@@ -5,15 +5,12 @@ from __future__ import annotations
 import math
 
 from fpcad.make.parts.dimensions import Dimensions
+from fpcad.make.parts.mcp_clearances import horn_inner, spoke_back
 from fpcad.make.parts.mcp_dimensions import Mcp
 from fpcad.make.parts.solids import FAR_MM, Solid, box, rod, union
 
 ANCHOR_MM = 0.4
 """Radius of the holes that strands go through to their knots."""
-SPOKE_BACK_MM = 2.0
-"""Behind it, beside the hub, abduction's pulleys leave room to the IP strands."""
-HORN_SHARE = 0.27
-"""Width of the horns, as a share of the pulley's radius."""
 KNOT_MM = 1.4
 """Radius of a knot's pocket."""
 
@@ -31,7 +28,8 @@ def mcp_cross(d: Dimensions) -> Solid:
         solids.append(box((m.bar_back, -m.cheek_outer, z[0]), (front, m.cheek_outer, z[1])))
         solids.append(box((0.0, -m.boss, z[0]), (front, m.boss, z[1])))
         solids.append(rod((0, 0, z[0]), (0, 0, z[1]), m.boss))
-    cross = union(solids)
+    rounded = rod((0, 0, -high), (0, 0, high), m.cross_reach)
+    cross = union(solids).intersect(rounded)
     pins = [rod((0, 0, side), (0, 0, side * FAR_MM), m.pivot + m.hold) for side in (-1, 1)]
     return cross.cut(_along_y(-FAR_MM, FAR_MM, m.axle + m.slip), *pins).clean()
 
@@ -68,10 +66,10 @@ def abduction_plate(d: Dimensions, side: int) -> Solid:
 
     plate = between(m.disc_inner, m.disc_outer, m.output_radius - m.strand)
     plate = plate.fuse(between(m.disc_lip, m.disc_outer, m.disc_rim))
-    horn = m.output_radius * (1 - HORN_SHARE)
+    back, horn = spoke_back(m, d.widest_abduction), horn_inner(m, d.widest_abduction)
     for hand in (-1, 1):
         low, high = sorted((hand * m.boss, hand * horn))
-        plate = plate.cut(box((-FAR_MM, low, -FAR_MM), (SPOKE_BACK_MM, high, FAR_MM)))
+        plate = plate.cut(box((-FAR_MM, low, -FAR_MM), (back, high, FAR_MM)))
     plate = plate.cut(box((-FAR_MM, -FAR_MM, -FAR_MM), (-m.horn_back, FAR_MM, FAR_MM)))
     plate = plate.cut(box((-FAR_MM, -m.boss, -FAR_MM), (0, m.boss, FAR_MM)))
     knot = between(0.0, FAR_MM, ANCHOR_MM).translate((0.72 * m.output_radius, 0, 0))

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from fpcad.errors import MakeError
+from fpcad.make.parts import mcp_clearances
 from fpcad.make.parts import mcp_dimensions as mcp
 from fpcad.make.parts.catalogue import Bearing, lookup
 from fpcad.make.parts.knuckle import Knuckle, finger_needed, knuckle
@@ -93,7 +94,7 @@ def finger_dimensions(spec: Spec, geometry: HandGeometry) -> Dimensions:
         clearance=settings.clearance_mm,
         ip_pulley=spec.motors.transmission.ip_pulley_radius_mm,
         knuckle=joint,
-        mcp=mcp.mcp_dimensions(spec.motors.transmission, settings),
+        mcp=mcp.mcp_dimensions(spec.motors.transmission, settings, _apart(geometry)),
         mcp_flex=limits["mcp_flex"],
         mcp_abd=limits["mcp_abd"],
         ip_flex=limits["ip_flex"],
@@ -172,7 +173,7 @@ def _root_reasons(spec: Spec, geometry: HandGeometry) -> list[str]:
         if finger not in radii:
             found.append(f"hand.palm: {finger} has no sphere at its root for its MCP joint")
     if radii:
-        found += mcp.reasons(sizes, min(radii.values()), max(abs(low), abs(high)))
+        found += mcp_clearances.reasons(sizes, min(radii.values()), max(abs(low), abs(high)))
     for a, b, apart in _neighbours(geometry):
         if apart < 2 * sizes.widest_half:
             found.append(
@@ -204,6 +205,11 @@ def _neighbours(geometry: HandGeometry) -> list[tuple[str, str, float]]:
                 found.append((a, b, along))
     nearest = sorted(found, key=lambda pair: pair[2])
     return [pair for pair in nearest if pair[2] < 1.5 * nearest[0][2]]
+
+
+def _apart(geometry: HandGeometry) -> float:
+    """Distance [mm] of the nearest fingers side by side; without any there is all the room."""
+    return min((apart for _, _, apart in _neighbours(geometry)), default=math.inf)
 
 
 def _link_reasons(spec: Spec, geometry: HandGeometry) -> list[str]:

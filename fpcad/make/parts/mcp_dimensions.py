@@ -8,7 +8,7 @@ docs/parts.md, "The differential".
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fpcad.make.parts.catalogue import Pin, Tendon, lookup
 from fpcad.spec.hardware import Print
@@ -23,8 +23,11 @@ RELIEF_MM = 0.1
 """Pulley and output disc hand the strand over at one point, so both stop this short of it."""
 LIP_EXTRA_MM = 0.05
 """Beyond the least wall, so that rounding in meshes does not make a lip too thin."""
-EAR_MM = 1.8
-HUB_MM = 2.4
+EAR_LEAST_MM, EAR_MOST_MM = 1.1, 3.0
+"""How far the axle stands in the palm's ears: what is always there, and what is enough."""
+AXLES_APART_MM = 0.2
+"""Between the axles of fingers side by side."""
+HUB_MM = 3.6
 """Length of an output disc's hub on its pin."""
 ARM_MM = 2.0
 """Length of the dorsal arm's hub on its pin."""
@@ -57,6 +60,8 @@ class Mcp:
     """What a turning hole is larger than its pin, in radius."""
     hold: float
     """What a holding hole is larger than its pin, in radius."""
+    ear: float = EAR_LEAST_MM
+    """How far the axle may stand in an ear."""
 
     @property
     def groove(self) -> float:
@@ -125,8 +130,8 @@ class Mcp:
 
     @property
     def ear_outer(self) -> float:
-        """Outer |y| of the palm's ears."""
-        return self.ear_inner + EAR_MM
+        """Outer |y| of what an axle may use of the palm's ears."""
+        return self.ear_inner + self.ear
 
     @property
     def bridge_inner(self) -> float:
@@ -183,7 +188,7 @@ class Mcp:
     @property
     def horn_back(self) -> float:
         """How far the discs' groove reaches back behind the abduction axis."""
-        return 0.42 * self.output_radius
+        return 0.4 * self.output_radius
 
     @property
     def cross_front(self) -> float:
@@ -191,21 +196,50 @@ class Mcp:
         return 5.4
 
     @property
+    def cross_reach(self) -> float:
+        """Radius about the abduction axis that all of the cross keeps within: the neck begins there."""
+        return self.disc_rim + self.gap
+
+    @property
     def bar_back(self) -> float:
         """Back of the bridges beside the bosses: the IP strands pass behind it."""
         return 3.0
 
     @property
+    def axle_length(self) -> float:
+        """Length of the flexion axle, as pins are sold."""
+        return lookup("pins", Pin, AXLE).longest(2 * self.ear_outer)
+
+    @property
+    def axle_seat(self) -> float:
+        """How far the axle stands in each ear."""
+        return self.axle_length / 2 - self.ear_inner
+
+    @property
+    def pivot_length(self) -> float:
+        """Length of both abduction pins, which begin at the bridges' inner faces."""
+        shorter = min(self.hub_outer, self.arm_outer)
+        return lookup("pins", Pin, PIVOT).longest(shorter - self.bridge_inner)
+
+    @property
+    def pivot_outer(self) -> float:
+        """|z| of the abduction pins' outer ends."""
+        return self.bridge_inner + self.pivot_length
+
+    @property
     def widest_half(self) -> float:
         """Half of the room along y that one finger's root takes up."""
-        return self.ear_inner + 1.1
+        return self.ear_inner + EAR_LEAST_MM
 
 
-def mcp_dimensions(routing: Routing, settings: Print) -> Mcp:
-    """Lengths of the differential that a spec's routing and print settings ask for."""
+def mcp_dimensions(routing: Routing, settings: Print, apart: float = 0.0) -> Mcp:
+    """Lengths of the differential that a spec's routing and print settings ask for.
+
+    `apart` [mm] is the distance of the nearest fingers side by side.
+    """
     tendon = lookup("tendons", Tendon, TENDON)
     axle, pivot = lookup("pins", Pin, AXLE), lookup("pins", Pin, PIVOT)
-    return Mcp(
+    sizes = Mcp(
         input_radius=routing.input_pulley_radius_mm,
         output_radius=routing.output_pulley_radius_mm,
         drum_radius=routing.idler_radius_mm,
@@ -217,40 +251,5 @@ def mcp_dimensions(routing: Routing, settings: Print) -> Mcp:
         slip=settings.slip_mm / 2,
         hold=settings.hold_mm / 2,
     )
-
-
-def neck_start(mcp: Mcp) -> float:
-    """Where along x [mm] the proximal bone's neck begins: beyond the cross, however far it is abducted."""
-    return math.hypot(mcp.cross_front, mcp.cheek_outer) + mcp.gap
-
-
-def neck_half_width(mcp: Mcp, widest_abduction: float) -> float:
-    """Half width of the neck: abducted [rad], it passes between the input pulleys up to their rims."""
-    cosine, sine = math.cos(widest_abduction), math.sin(widest_abduction)
-    return (mcp.pulley_inner - mcp.gap) * cosine - (mcp.pulley_rim + mcp.gap) * sine
-
-
-def beyond_pulleys(mcp: Mcp, widest_abduction: float, half_width: float) -> float:
-    """Where along x [mm] a neck of this half width may begin that is abducted beyond the pulleys."""
-    cosine, sine = math.cos(widest_abduction), math.sin(widest_abduction)
-    return (mcp.pulley_rim + mcp.gap + half_width * sine) / cosine
-
-
-def reasons(mcp: Mcp, root: float, widest_abduction: float) -> list[str]:
-    """Why the differential has no room in a sphere of radius `root` [mm], nothing where it has."""
-    found = []
-    pulley = math.hypot(mcp.pulley_rim, mcp.pulley_outer)
-    disc = math.hypot(mcp.disc_outer, mcp.disc_rim)
-    for what, needs in (("input pulley", pulley), ("output disc", disc), ("hub", mcp.cavity)):
-        if needs > root - mcp.gap:
-            found.append(f"{what} reaches {needs:.1f} mm from the root, its sphere has {root:g} mm")
-    rooms = (
-        ("cheek of the MCP cross", mcp.cheek_outer - mcp.cheek_inner, 1.4),
-        ("bridge of the MCP cross", mcp.bridge_outer - mcp.bridge_inner, PIVOT_HOLD_MM),
-        ("neck of the proximal bone", neck_half_width(mcp, widest_abduction), 1.6),
-        ("wall of the IP drum", mcp.drum_radius - mcp.strand - mcp.axle - mcp.slip, 0.8),
-    )
-    for what, has, needs in rooms:
-        if has < needs - 1e-9:
-            found.append(f"{what}: {has:.2f} mm are left, {needs:g} mm are needed")
-    return found
+    free = (apart - AXLES_APART_MM) / 2 - sizes.ear_inner
+    return replace(sizes, ear=min(max(free, EAR_LEAST_MM), EAR_MOST_MM))

@@ -14,7 +14,8 @@ from fpcad.make.parts.solids import Solid
 
 Array = NDArray[np.float64]
 
-Material = Literal["endoskeleton", "skin"]
+Material = Literal["endoskeleton", "skin", "metal"]
+"""Printed rigid, printed flexible, or made to order."""
 
 FIXED_LINK = "palm"
 """The one link that is no finger's: palm, flange and motor box are all fixed to it."""

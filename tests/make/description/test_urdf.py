@@ -16,6 +16,7 @@ from fpcad.make.description import describe
 from fpcad.make.description.urdf import urdf_text
 from fpcad.make.hand import link_bodies, make_hand
 from fpcad.make.inertia import inertia_of
+from fpcad.make.parts.materials import densities
 from fpcad.make.primitives import pose_along, roll_pitch_yaw
 from fpcad.model.geometry import link_poses
 from fpcad.spec.catalogue import motor
@@ -150,10 +151,7 @@ def test_pose_along_points_its_z():
 def test_the_palm_weighs_what_is_fixed_to_it(clay_hand):
     palm = ET.parse(urdf_file(clay_hand)).getroot().find("link[@name='palm']/inertial/mass")
     assert palm is not None
-    density = {
-        "endoskeleton": CLAY.print.bone_density_g_cm3,
-        "skin": CLAY.print.skin_density_g_cm3,
-    }
+    density = densities(CLAY.print)
     made = assembly_of(CENTRE)
     grams = sum(
         part.count * part.mesh.volume * 1e-3 * density[part.material]

@@ -89,7 +89,7 @@ def test_ears_hold_what_pulls_and_pushes_on_the_whole_finger(finger: str, link: 
     found = forces_of(finger, held, motors)
     force, moment = whole_finger(finger, held, found)
     np.testing.assert_allclose(found.ears.sum(axis=1), force, atol=1e-9)
-    ear = (D.mcp.ear_inner + D.mcp.ear_outer) / 2
+    ear = D.mcp.ear_inner + D.mcp.axle_seat / 2
     levers = np.array([[0.0, -ear, 0.0], [0.0, ear, 0.0]])
     given = np.cross(levers, found.ears).sum(axis=1)
     size = np.abs(moment).max()
