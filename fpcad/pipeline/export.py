@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 
@@ -23,6 +25,8 @@ from fpcad.spec.dump import spec_hash
 from fpcad.store import json_text, read_json, read_table
 
 GRIP, SURVIVAL = "grip.json", "survival.json"
+FOLDERS = "parts", "hand"
+"""All files in there are of one hand."""
 PART_STEPS = 24
 """About how many steps `make_hand` tells, for the bar."""
 
@@ -76,12 +80,24 @@ def _export_chosen(build: Build) -> int:
         progress = partial(bar.advance, 1)
         made = build.spec, geometry, build.folder
         files = make_hand(*made, progress, trajectories, int(selected["id"]))
+    drop_others(files, *(build.folder / folder for folder in FOLDERS))
     with build.reporter.stage("errors of print and joints", None):
         figures = survival(build.bench, design, paths.values())
     stamp.write(build.folder / SURVIVAL, json_text(figures))
     for line in told(figures):
         build.reporter.note(line)
     return len(files) + len(build.spec.poses) + 2
+
+
+def drop_others(files: Iterable[Path], *folders: Path) -> None:
+    """Remove what an earlier export left in the folders: another hand's parts must not be printed."""
+    kept = set(files)
+    for folder in folders:
+        for path in sorted(folder.rglob("*"), reverse=True):
+            if path.is_file() and path not in kept:
+                path.unlink()
+            elif path.is_dir() and not any(path.iterdir()):
+                path.rmdir()
 
 
 EXPORT = Stage(

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 import trimesh
 from ruamel.yaml import YAML
+from scipy.spatial import KDTree
+from scipy.spatial.transform import Rotation
 
 from fpcad.make.hand import link_bodies
+from fpcad.make.mesh import mesh_of
+from fpcad.make.parts.bone import proximal_bone
+from fpcad.make.parts.catalogue import Metal, lookup
 from fpcad.make.parts.dimensions import finger_dimensions
 from fpcad.make.parts.feasible import why_not
-from fpcad.make.parts.routing import free_tangents, strands
+from fpcad.make.parts.routing import Strand, free_tangents, strands
 from fpcad.make.parts.tendon_paths import FingerTendons, motor_turns
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.transmission import finger_transmission
@@ -58,6 +64,39 @@ def test_ip_strands_pass_the_turning_cross(values):
             assert abs(off) <= (high - low) / 2 + 1e-9
 
 
+@pytest.mark.parametrize("values", [CENTRE, *CORNERS], ids=str)
+def test_no_strand_meets_the_swinging_bone(values):
+    """Distances of points on the strands to points on the bone: 0.1 mm apart on both.
+
+    From palms steeper than 90 deg strands leave below the finger; it meets them where it is flexed
+    and abducted far, both at once. docs/parts.md tells.
+    """
+    geometry = geometry_of(values)
+    d = finger_dimensions(CLAY, geometry)
+    bone = mesh_of("proximal_bone", proximal_bone(d), CLAY.print)
+    points, _ = trimesh.sample.sample_surface_even(bone, 40_000, seed=1)
+    near = KDTree(points[np.linalg.norm(points, axis=1) < 2 * d.root])
+    finger = geometry.fingers[0]
+    ways = np.concatenate([along(strand) for strand in strands(d, geometry.T_palm_root[finger])])
+    for flexion in np.linspace(*d.mcp_flex, 12):
+        for abduction in np.linspace(*d.mcp_abd, 5):
+            if values[4] > 90 and flexion > np.radians(72) and abs(abduction) > np.radians(10):
+                continue
+            back = Rotation.from_euler("YZ", [flexion, abduction]).inv()
+            apart, _ = near.query(back.apply(ways))
+            assert apart.min() - d.mcp.strand > 0.03, (flexion, abduction)
+
+
+def along(strand: Strand) -> np.ndarray:
+    """Points every tenth of a millimetre on a strand outside its pulley, (n, 3) [mm]."""
+    corners = strand.outside()
+    legs = [
+        a + (b - a) * np.linspace(0, 1, 1 + int(10 * np.linalg.norm(b - a)))[:, None]
+        for a, b in itertools.pairwise(corners)
+    ]
+    return np.concatenate(legs)
+
+
 def test_file_tells_tendons_and_travel():
     document = YAML(typ="safe").load(transmission_yaml(CLAY, geometry_of(CENTRE)))
     assert len(document["tendons"]) == 24
@@ -72,11 +111,16 @@ def test_links_weigh_their_prints_and_what_is_bought():
     assembly = assembly_of(CENTRE)
     bodies = link_bodies(CLAY, assembly)
     for link in ("mcp", "proximal", "distal"):
+        density = {
+            "skin": CLAY.print.skin_density_g_cm3,
+            "endoskeleton": CLAY.print.bone_density_g_cm3,
+            "metal": lookup("metals", Metal, CLAY.print.cross_material).density_g_cm3,
+        }
         printed = sum(
-            p.mesh.volume * len(p.places)
-            * (CLAY.print.skin_density_g_cm3 if p.material == "skin" else CLAY.print.bone_density_g_cm3)
-            for p in assembly.parts if p.link == link
-        )  # fmt: skip
+            p.mesh.volume * len(p.places) * density[p.material]
+            for p in assembly.parts
+            if p.link == link
+        )
         bought = sum(b.mass_g * len(b.places) for b in assembly.bought if b.link == link)
         assert bought > 0
         assert bodies[link].inertia.mass_kg == pytest.approx(printed * 1e-6 + bought * 1e-3)

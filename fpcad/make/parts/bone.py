@@ -199,7 +199,7 @@ def _palmar_disc(d: Dimensions) -> Solid:
             abduction_plate(d, -1),
             hub,
             bar,
-            _arm(d, m.pulley_side - m.strand, -m.hub_outer, -m.pulley_rim - m.gap),
+            _arm(d, -m.hub_outer, -m.pulley_rim - m.gap),
         ]
     )
 
@@ -209,12 +209,12 @@ def _dorsal_arm(d: Dimensions) -> Solid:
     m = d.mcp
     hub = rod((0, 0, m.arm_inner), (0, 0, m.arm_outer), m.boss)
     step = _bar(d, m.bridge_outer + m.gap, m.arm_outer, m.disc_rim + m.gap)
-    return union([hub, _arm(d, m.pulley_side - m.strand, m.arm_inner, m.arm_outer), step])
+    return union([hub, _arm(d, m.arm_inner, m.arm_outer), step])
 
 
-def _arm(d: Dimensions, beside: float, low: float, high: float) -> Solid:
-    """What carries a hub's load to the neck, where no pulley is in the way; `beside` it is a wall."""
-    arm = extruded(arm_outline(d.mcp, d.widest_abduction, beside), low, high)
+def _arm(d: Dimensions, low: float, high: float) -> Solid:
+    """What carries a hub's load to the neck, where no pulley is in the way."""
+    arm = extruded(arm_outline(d.mcp, d.widest_abduction), low, high)
     return arm.fuse(_bar(d, low, high, 0.0)).intersect(ball((0, 0, 0), d.root - d.clearance))
 
 

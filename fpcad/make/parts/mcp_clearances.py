@@ -50,21 +50,24 @@ def arm_end(mcp: Mcp, widest_abduction: float) -> float:
     return beyond_pulleys(mcp, widest_abduction, neck_half_width(mcp, widest_abduction))
 
 
-def arm_outline(mcp: Mcp, widest_abduction: float, beside: float) -> list[tuple[float, float]]:
+def between_strands(mcp: Mcp, widest_abduction: float, x: float) -> float:
+    """Half width [mm] at `x` of what swings between the motors' strands beside the input pulleys."""
+    room = mcp.pulley_side - mcp.strand - mcp.gap
+    return (room - x * math.sin(widest_abduction)) / math.cos(widest_abduction)
+
+
+def arm_outline(mcp: Mcp, widest_abduction: float) -> list[tuple[float, float]]:
     """Corners (x, y) [mm] of the bone's arms above and below the pulleys, beside the hubs.
 
-    They are as wide as the discs, or as what stands at |y| = `beside` lets them swing: dorsally the motors'
-    strands, on the palmar side the palm's ears.
+    They are as wide as the discs, or as the motors' strands let them swing.
     """
-    cosine, sine = math.cos(widest_abduction), math.sin(widest_abduction)
-    end, room = arm_end(mcp, widest_abduction), beside - mcp.gap
-
-    def half_width(x: float) -> float:
-        return min(mcp.disc_rim, (room - x * sine) / cosine)
-
-    narrows = (room - mcp.disc_rim * cosine) / sine if sine > 0 else end
-    start = spoke_back(mcp, widest_abduction)
-    corners = [(x, half_width(x)) for x in sorted({start, min(max(narrows, start), end), end})]
+    start, end = spoke_back(mcp, widest_abduction), arm_end(mcp, widest_abduction)
+    slope, widest = math.tan(widest_abduction), between_strands(mcp, widest_abduction, 0.0)
+    narrows = (widest - mcp.disc_rim) / slope if slope > 0 else end
+    corners = [
+        (x, min(mcp.disc_rim, between_strands(mcp, widest_abduction, x)))
+        for x in sorted({start, min(max(narrows, start), end), end})
+    ]
     return [*corners, *((x, -y) for x, y in reversed(corners))]
 
 

@@ -10,6 +10,7 @@ import pytest
 import trimesh
 from shapely.geometry import box
 
+from fpcad.make.documents.inventory import read_inventory
 from fpcad.make.loads.bones import Beam, Bones, Pushes, beams
 from fpcad.make.loads.finger import Touched, finger_forces
 from fpcad.make.loads.sections import section_of
@@ -55,9 +56,8 @@ def test_both_prongs_carry_the_pin():
 def built(built_clay: Path) -> tuple[Dimensions, HandGeometry, dict[str, trimesh.Trimesh]]:
     """Dimensions and bone meshes of a finished hand, from its files."""
     spec, geometry = finished_hand(built_clay)
-    folder = built_clay / "parts" / "endoskeleton"
-    names = ("distal_bone", "proximal_bone", "mcp_cross")
-    meshes = {name: trimesh.load_mesh(folder / f"{name}.stl") for name in names}
+    parts = read_inventory(built_clay / "parts").parts
+    meshes = {part.name: part.mesh for part in parts}
     return finger_dimensions(spec, geometry), geometry, meshes
 
 
