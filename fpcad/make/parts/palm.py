@@ -21,6 +21,7 @@ from fpcad.make.parts.solids import (
     Solid,
     ball,
     box,
+    cleaned,
     palm_primitive,
     placed,
     rod,
@@ -60,7 +61,7 @@ def palm_solid(
     place = pad_place(geometry, flange)
     if place is not None:
         body = body.cut(*pad_recess(geometry, place, d))
-    return _largest(body.clean())
+    return _largest(cleaned(body))
 
 
 def _mounts(geometry: HandGeometry, inset: float) -> list[Solid]:

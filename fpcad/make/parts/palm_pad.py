@@ -16,7 +16,7 @@ from fpcad.make.parts.dimensions import Dimensions, roof_height
 from fpcad.make.parts.flange_dimensions import FlangeDimensions
 from fpcad.make.parts.palm_room import below_roof, link_room
 from fpcad.make.parts.part import FIXED_LINK
-from fpcad.make.parts.solids import FAR_MM, Solid, ball, box, palm_primitive, placed, rod
+from fpcad.make.parts.solids import FAR_MM, Solid, ball, box, cleaned, palm_primitive, placed, rod
 from fpcad.model.geometry import HandGeometry, PalmShape
 
 Array = NDArray[np.float64]
@@ -113,7 +113,7 @@ def pad_solid(geometry: HandGeometry, place: PadPlace, d: Dimensions) -> Solid:
     plugs = [_plug(place, point, 0.0) for point in place.plugs]
     core = _core(geometry, place.bar, d, thick).intersect(_below(top)).cut(*plugs)
     pad = outside.cut(core).fuse(*[plug.intersect(_above(top - LIP_MM / 2)) for plug in plugs])
-    return max(pad.clean().Solids(), key=lambda piece: piece.Volume())
+    return max(cleaned(pad).Solids(), key=lambda piece: piece.Volume())
 
 
 def pad_recess(geometry: HandGeometry, place: PadPlace, d: Dimensions) -> list[Solid]:

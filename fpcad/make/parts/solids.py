@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -9,8 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpcad.make.toolchain import cadquery
+from fpcad.errors import MakeError
+from fpcad.make.toolchain import cadquery, modelling
 from fpcad.model.geometry import PalmShape
+
+log = logging.getLogger(__name__)
 
 Solid = Any
 """A cadquery shape; untyped because cadquery is imported on first use."""
@@ -57,6 +61,16 @@ def palm_primitive(shape: PalmShape, inset: float) -> Solid:
 def union(solids: Sequence[Solid]) -> Solid:
     """All solids as one."""
     return solids[0].fuse(*solids[1:]) if len(solids) > 1 else solids[0]
+
+
+def cleaned(solid: Solid) -> Solid:
+    """The solid with faces merged where they are one, or as it is where the CAD kernel cannot merge them."""
+    try:
+        with modelling("clean-up"):
+            return solid.clean()
+    except MakeError as error:
+        log.debug("faces stay apart: %s", error)
+        return solid
 
 
 def finger_core(length: float, radius: float) -> Solid:
