@@ -13,20 +13,26 @@ from fpcad.errors import MakeError
 from fpcad.make.documents.stamp import Stamp
 from fpcad.make.gripping import gripping_trajectory
 from fpcad.make.hand import make_hand
+from fpcad.make.parts.assembly import Progress
 from fpcad.make.survive import survival, told
+from fpcad.make.trajectory import Trajectory
 from fpcad.make.trajectory_file import write_trajectory
-from fpcad.model.geometry import hand_geometry
+from fpcad.model.geometry import HandGeometry, hand_geometry
+from fpcad.pipeline.apart import run_apart
 from fpcad.pipeline.evaluate import FILE as METRICS_FILE
 from fpcad.pipeline.paths import drop_spare_paths, read_paths
 from fpcad.pipeline.select import METRICS, SELECTED, refuse
 from fpcad.pipeline.stage import Build, Counts, Stage
 from fpcad.sample.space import design_space
 from fpcad.spec.dump import spec_hash
+from fpcad.spec.schema import Spec
 from fpcad.store import json_text, read_json, read_table
 
 GRIP, SURVIVAL = "grip.json", "survival.json"
 FOLDERS = "parts", "hand"
 """All files in there are of one hand."""
+CAD_LIMIT_S = 900
+"""Processor time of a hand's CAD; one takes some 100 s, and the CAD kernel may never end."""
 PART_STEPS = 24
 """About how many steps `make_hand` tells, for the bar."""
 
@@ -78,8 +84,8 @@ def _export_chosen(build: Build) -> int:
     )
     with build.reporter.stage("parts", PART_STEPS) as bar:
         progress = partial(bar.advance, 1)
-        made = build.spec, geometry, build.folder
-        files = make_hand(*made, progress, trajectories, int(selected["id"]))
+        order = build.spec, geometry, build.folder, trajectories, int(selected["id"])
+        files = run_apart(_make, order, CAD_LIMIT_S, progress)
     drop_others(files, *(build.folder / folder for folder in FOLDERS))
     with build.reporter.stage("errors of print and joints", None):
         figures = survival(build.bench, design, paths.values())
@@ -87,6 +93,13 @@ def _export_chosen(build: Build) -> int:
     for line in told(figures):
         build.reporter.note(line)
     return len(files) + len(build.spec.poses) + 2
+
+
+def _make(
+    tell: Progress, order: tuple[Spec, HandGeometry, Path, dict[str, Trajectory], int]
+) -> list[Path]:
+    spec, geometry, folder, trajectories, chosen = order
+    return make_hand(spec, geometry, folder, tell, trajectories, chosen)
 
 
 def drop_others(files: Iterable[Path], *folders: Path) -> None:

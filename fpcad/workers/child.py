@@ -31,6 +31,18 @@ class Answer(IntEnum):
     """A task's result."""
     FAILURE = 3
     """A task's failure: its reason and its traceback."""
+    TOLD = 4
+    """What a task tells on its way, see :func:`tell`."""
+
+
+_parent: Connection | None = None
+
+
+def tell(content: Any) -> None:
+    """Let the parent know something before the result; the parent must expect it."""
+    if _parent is None:
+        raise RuntimeError("only a worker has somebody to tell")
+    _parent.send_bytes(_packed(Answer.TOLD, content))
 
 
 def main() -> None:
@@ -44,6 +56,8 @@ def main() -> None:
 
 
 def _serve(connection: Connection) -> None:
+    global _parent
+    _parent = connection
     try:
         context = connection.recv()()
     except Exception as error:  # noqa: BLE001 - told to the parent, which raises it
