@@ -34,8 +34,10 @@ class Grip(SpecModel):
     tendon_stiffness_n: Positive = 12_000.0
     """Axial stiffness EA of a tendon [N]: force for a unit of strain. Bedded-in 0.6 mm Dyneema braid
     by default, an estimate until it is measured."""
-    tendon_length_mm: Positive = 250.0
-    """Free length of a tendon from spool to pulley [mm]."""
+    tendon_length_mm: Positive = 185.0
+    """Free length of a tendon from spool to pulley [mm]. The mean of clay's loops as modelled by default:
+    150 to 160 for the MCP joint, 210 to 260 for the IP joint with the finger's own strand, see
+    hand/transmission.yaml."""
     servo_stiffness_nm_rad: Positive | None = None
     """Stiffness of a servo at its shaft [N m/rad]; estimated from its catalogue row by default."""
     skin_stiffness_n_mm: Positive = 30.0
