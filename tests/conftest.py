@@ -27,6 +27,22 @@ BUILT_HAND = 0
 """The initial hand, at the centre of clay's box: it can surely be made, and making one takes a minute."""
 
 
+DEAR_FIRST = (
+    "tests/test_cli_making.py",  # makes `built_clay`, while the other process makes twenty hands
+    "tests/benchmarks/test_parts_of_hands.py",
+    "tests/look/test_explore.py",
+    "tests/make/test_parts.py",
+    "tests/look/test_own_metric.py",
+)
+"""Files of several minutes, so that no process is left alone with one of them at the end."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Dear files first; processes take files in this order where xdist leaves it as it is."""
+    place = {name: number for number, name in enumerate(DEAR_FIRST)}
+    items.sort(key=lambda item: place.get(item.nodeid.split("::")[0], len(place)))
+
+
 @dataclass(frozen=True)
 class FirstHand:
     """The hand that clay's sampling starts from, all of its poses solved."""

@@ -27,6 +27,8 @@ from tests.conftest import BUILT_HAND
 
 EXPORTED = ("hand", "parts", "trajectories", "grip.json", "survival.json")
 """What the stage export writes in a build's folder."""
+PATIENCE_S = 1800.0
+"""Making a hand takes a busy machine long; nothing here tests how fast."""
 Server = tuple[LiveView, ThreadingHTTPServer]
 
 
@@ -53,7 +55,7 @@ def server(copied_build: Path) -> Iterator[Server]:
 def ask(server: Server, method: str, path: str, body: str = "", **headers: str) -> tuple[int, Any]:
     """Status and JSON of a request; underscores in header names stand for dashes."""
     host, port = server[1].server_address[:2]
-    connection = http.client.HTTPConnection(str(host), port, timeout=300)
+    connection = http.client.HTTPConnection(str(host), port, timeout=PATIENCE_S)
     named = {name.replace("_", "-"): value for name, value in headers.items()}
     connection.request(method, path, body, named)
     answer = connection.getresponse()
