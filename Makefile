@@ -44,7 +44,7 @@ design: $(INSTALLED) ## Make the hand of designs/NAME.yaml in build/NAME: make d
 	$(BIN)/fpcad design $(NAME) $(ARGS)
 
 test: $(TESTABLE) ## Run the tests; ARGS are pytest's, as in: make test ARGS=tests/select
-	$(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadfile $(ARGS)
+	$(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadfile --no-loadscope-reorder $(ARGS)
 
 bench: $(INSTALLED) ## Measure solver, paths and sampling beside their baselines; build/bench.json.
 	$(BIN)/python -m benchmarks.speed $(ARGS)

@@ -17,7 +17,9 @@ def test_check_passes_a_finished_build_and_tells_its_figures(built_clay):
     result = RUN.invoke(app, ["check", str(built_clay), "--json"])
     assert result.exit_code == 0
     findings = json.loads(result.stdout)
-    assert {"wall", "bed", "joint", "interference", "reach"} <= {f["gate"] for f in findings}
+    assert {"wall", "bed", "tubes", "joint", "interference", "reach"} <= {
+        f["gate"] for f in findings
+    }
     assert {f["severity"] for f in findings} <= {"figure", "warning"}
 
 

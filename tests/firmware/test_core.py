@@ -1,7 +1,11 @@
 """The firmware's core against the Python definition: bytes, tables, quintics, limits."""
 
 import ctypes
+import ctypes.util
+import subprocess
+import sys
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -57,9 +61,7 @@ def fits(code: int, payload: bytes) -> bool:
     return rest >= 0 and rest % per_joint == 0 and rest // per_joint <= 12
 
 
-@settings(deadline=None)
-@given(FRAMES)
-def test_frames_of_c_and_of_python_are_the_same_bytes(frame):
+def framed(frame: Frame) -> bytes:
     wire = ctypes.create_string_buffer(255)
     length = library().bench_frame(
         ctypes.c_uint8(frame.kind),
@@ -69,8 +71,26 @@ def test_frames_of_c_and_of_python_are_the_same_bytes(frame):
         ctypes.c_uint8(len(frame.payload)),
         wire,
     )
-    ours = encode_frame(Frame(frame.kind, frame.seq, frame.session, frame.payload))
-    assert wire.raw[:length] == ours
+    return wire.raw[:length]
+
+
+@settings(deadline=None)
+@given(FRAMES)
+def test_frames_of_c_and_of_python_are_the_same_bytes(frame):
+    assert framed(frame) == encode_frame(Frame(frame.kind, frame.seq, frame.session, frame.payload))
+
+
+def test_the_library_calls_its_own_functions():
+    """Where a process holds zlib for all to see, its crc32 is another one."""
+    code = (
+        f"import ctypes; ctypes.CDLL({ctypes.util.find_library('z')!r}, ctypes.RTLD_GLOBAL)\n"
+        "from tests.firmware.test_core import Frame, encode_frame, framed\n"
+        "frame = Frame(1, 2, 3, b'four')\n"
+        "assert framed(frame) == encode_frame(frame)\n"
+    )
+    root = Path(__file__).parents[2]
+    done = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def test_every_pair_of_the_state_table_is_the_same():

@@ -1,4 +1,4 @@
-"""One made hand for all tests of this folder."""
+"""What the tests of this folder share of a made hand."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from fpcad.make.hand import make_hand
 from fpcad.make.parts.part import Part
-from tests.make.hands import CENTRE, CLAY, geometry_of, parts_of
+from fpcad.store import read_json
+from tests.make.hands import CENTRE, parts_of
 
 
 @pytest.fixture(scope="session")
@@ -18,8 +18,8 @@ def clay_parts() -> dict[str, Part]:
 
 
 @pytest.fixture(scope="session")
-def clay_hand(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def clay_hand(built_clay: Path) -> Path:
     """Build folder of the hand at the centre of clay's box."""
-    out = tmp_path_factory.mktemp("clay")
-    make_hand(CLAY, geometry_of(CENTRE), out)
-    return out
+    design = read_json(built_clay / "selected.json")["design"]
+    assert tuple(design.values()) == pytest.approx(CENTRE)
+    return built_clay

@@ -87,7 +87,7 @@ def draw(
     plotter = pv.Plotter(off_screen=True, window_size=list(SIZE), lighting="light kit")
     try:
         plotter.set_background("white")
-        for mesh, colour in pieces:
+        for colour, mesh in _by_colour(pieces).items():
             shown = pv.wrap(mesh)
             plotter.add_mesh(
                 shown, color=colour, smooth_shading=True, split_sharp_edges=True, ambient=0.15
@@ -106,6 +106,14 @@ def draw(
             return stamp.write(png, _trimmed(shot))
     finally:
         plotter.close()
+
+
+def _by_colour(pieces: Iterable[Piece]) -> dict[str, trimesh.parent.Geometry]:
+    """All pieces of a colour as one mesh: each mesh that is shown costs time, however small."""
+    found: dict[str, list[trimesh.Trimesh]] = {}
+    for mesh, colour in pieces:
+        found.setdefault(colour, []).append(mesh)
+    return {colour: trimesh.util.concatenate(meshes) for colour, meshes in found.items()}
 
 
 def _trimmed(shot: Path) -> bytes:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fpcad.make.gates.bodies import Body, body_poses
 from fpcad.make.gates.bounds import box_gap, least_distance, swept_box
 from fpcad.make.gates.finding import Finding, Severity, point
-from fpcad.make.gates.meeting import meet
+from fpcad.make.gates.meeting import meet, nearby
 from fpcad.make.gates.postures import STEP_RAD
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.hand import Hand
@@ -48,8 +48,13 @@ def check_joints(bodies: Sequence[Body], geometry: HandGeometry, hand: Hand) -> 
         gap, closest = least.setdefault(between, (TOLD_MM, "none closer"))
         if box_gap(swept_box(a, T_a), swept_box(b, T_b)) > gap:
             continue
-        for k in np.flatnonzero(least_distance(a, T_a, b, T_b) < gap):
-            own, shared = meet(a, T_a[k], b, T_b[k], gap)
+        bound = least_distance(a, T_a, b, T_b)
+        near = np.flatnonzero(bound < gap)
+        close = nearby(a, b, T_b[near], gap)
+        for k in near:
+            if bound[k] >= gap:
+                continue
+            own, shared = meet(close, T_a[k], b, T_b[k], gap)
             if shared is not None:
                 angles = joints[k, geometry.fingers.index(str(b.finger))] * DEG_PER_RAD
                 text = (

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
+import manifold3d
 import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.make.gates.bodies import Body
+from fpcad.make.gates.bounds import swept_box
 from fpcad.make.mesh import INTERFERENCE_MM3
 
 Array = NDArray[np.float64]
 
 
 LEAST_SEARCH_MM = 0.01
+MANY = 8
+"""Postures from which on it pays to cut out what of a body is near to another one."""
 
 
 class Overlap(NamedTuple):
@@ -40,6 +45,20 @@ def meet(
     if volume <= INTERFERENCE_MM3:
         return 0.0, None
     return 0.0, Overlap(volume, np.array(common.bounding_box()).reshape(2, 3).mean(axis=0))
+
+
+def nearby(still: Body, b: Body, T_b: Array, search_mm: float) -> Body:
+    """What of a body that stands still at the origin another one may come near to, at poses (N, 4, 4).
+
+    Distances up to `search_mm` and common volumes stay as they are: cuts run inside the body and
+    farther away. A boolean, which every distance begins with, takes time by the number of triangles.
+    """
+    if not still.still or len(T_b) < MANY:
+        return still
+    box = swept_box(b, T_b)
+    low, high = box[0] - search_mm - LEAST_SEARCH_MM, box[1] + search_mm + LEAST_SEARCH_MM
+    room = manifold3d.Manifold.cube([float(x) for x in high - low])
+    return replace(still, solid=still.solid ^ room.translate([float(x) for x in low]))
 
 
 def relative(T_a: Array, T_b: Array) -> Array:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from fpcad.make.gates.bodies import TOOL, Body, body_of, body_poses
 from fpcad.make.gates.bounds import box_gap, least_distance, swept_box
 from fpcad.make.gates.finding import Finding, Severity, point
-from fpcad.make.gates.meeting import meet
+from fpcad.make.gates.meeting import meet, nearby
 from fpcad.make.gates.postures import Postures
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
@@ -71,9 +71,13 @@ def check_meetings(
         if box_gap(boxes[id(a)], boxes[id(b)]) > least:
             continue
         T_a, T_b = poses[id(a)], poses[id(b)]
-        near = np.flatnonzero(least_distance(a, T_a, b, T_b) < least)
+        bound = least_distance(a, T_a, b, T_b)
+        near = np.flatnonzero(bound < least)
+        close = nearby(a, b, T_b[near], least)
         for k in near:
-            gap, shared = meet(a, T_a[k], b, T_b[k], least)
+            if bound[k] >= least:
+                continue
+            gap, shared = meet(close, T_a[k], b, T_b[k], least)
             if shared is not None:
                 found.append(_meeting(postures, a, b, shared.volume_mm3, shared.at_mm, int(k)))
                 break

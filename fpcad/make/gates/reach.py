@@ -17,7 +17,7 @@ from fpcad.make.gates.bodies import Body, body_of_solid, body_poses, link_poses,
 from fpcad.make.gates.bounds import box_gap, surface_distance, swept_box
 from fpcad.make.gates.finding import Finding, Point, Severity, point
 from fpcad.make.gates.joints import joint_grid
-from fpcad.make.gates.meeting import LEAST_SEARCH_MM, meet
+from fpcad.make.gates.meeting import LEAST_SEARCH_MM, meet, nearby
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.hand import Hand
 from fpcad.spec.templates import TEMPLATES
@@ -130,13 +130,17 @@ class Sweep:
             surface_distance(self._obstacle, link, T) <= 0
             for link, T in zip(self._moving, poses, strict=True)
         ]
+        pieces = {
+            link.link: nearby(self._obstacle, link, T[flags], LEAST_SEARCH_MM)
+            for link, T, flags in zip(self._moving, poses, near, strict=True)
+        }
 
         known: dict[bytes, Contact | None] = {}
 
         def judge_link(link: Body, T: Array) -> Contact | None:
             place = T.tobytes() + link.link.encode()  # a link passes most places many times
             if place not in known:
-                _, shared = meet(self._obstacle, T_still, link, T, LEAST_SEARCH_MM)
+                _, shared = meet(pieces[link.link], T_still, link, T, LEAST_SEARCH_MM)
                 known[place] = None if shared is None else self._which(link.link, T)
             return known[place]
 

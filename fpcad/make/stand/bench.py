@@ -42,7 +42,8 @@ def bench_solids(
     half = min(-low[1], high[1], flange.outer_mm / 2 + AROUND_MM)
     wall = box((-WALL_MM, -half, low[2]), (0, half, top)).cut(*_pattern(flange))
     gussets = [_gusset(side * half, floor_mm) for side in (-1, 1)]
-    stand = union([plate, wall, *gussets]).cut(*channels).clean()
+    stand = union([plate, wall, *gussets])
+    stand = (stand.cut(*channels) if channels else stand).clean()
     if high[0] - low[0] <= longest_mm:
         return [stand]
     return _halves(stand, (low[0] + high[0] - JOINT_LONG_MM) / 2, clearance)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
+import manifold3d
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from fpcad.make.documents.views import hand_pieces
+from fpcad.make.gates.bodies import Body, body_poses
 from fpcad.make.mesh import manifold_of
-from fpcad.make.parts.assembly import Assembly
 from fpcad.make.stand.jig_place import AWAY_MM, AWAY_STEP_MM
 from fpcad.model.geometry import HandGeometry
 
@@ -23,7 +23,7 @@ TOLD_MM = 5.0
 def least_gap(
     jig: trimesh.Trimesh,
     away: Array,
-    assembly: Assembly,
+    bodies: Sequence[Body],
     geometry: HandGeometry,
     postures: Sequence[Array],
     T_palm_stand: Array,
@@ -34,22 +34,12 @@ def least_gap(
         away: (3,) unit vector along which the jig is drawn away from the first posture.
         postures: joints (n_fingers, 3) [rad]; in the others the jig is in its place.
     """
-    here = np.zeros(1)
-    gap = TOLD_MM
-    for number, joints in enumerate(postures):
-        steps = np.arange(0.0, AWAY_MM, AWAY_STEP_MM) if number == 0 else here
-        pieces = [
-            mesh.copy().apply_transform(np.linalg.inv(T_palm_stand))
-            for mesh, _ in hand_pieces(assembly, geometry, joints)
-        ]
-        for piece in pieces:
-            near = [s for s in steps if _boxes_apart(jig.bounds + s * away, piece.bounds) < gap]
-            if not near:
-                continue
-            body, tool = manifold_of(piece), manifold_of(jig)
-            for step in near:
-                moved = tool.translate([float(x) for x in step * away])
-                gap = min(gap, float(body.min_gap(moved, gap)))
+    gap, body = TOLD_MM, manifold_of(jig)
+    for number, piece, bounds in _pieces(bodies, geometry, postures, T_palm_stand):
+        for step in np.arange(0.0, AWAY_MM, AWAY_STEP_MM) if number == 0 else np.zeros(1):
+            if _boxes_apart(jig.bounds + step * away, bounds) < gap:
+                moved = body.translate([float(x) for x in step * away])
+                gap = min(gap, float(piece.min_gap(moved, gap)))
                 if gap <= 0:
                     return 0.0
     return gap
@@ -57,20 +47,35 @@ def least_gap(
 
 def shared_volume(
     still: trimesh.Trimesh,
-    assembly: Assembly,
+    bodies: Sequence[Body],
     geometry: HandGeometry,
     postures: Sequence[Array],
     T_palm_stand: Array,
 ) -> float:
     """Largest volume [mm^3] that one of the hand's pieces shares with a part of the stand."""
-    body, T = manifold_of(still), np.linalg.inv(T_palm_stand)
-    volumes = [0.0]
-    for joints in postures:
-        for mesh, _ in hand_pieces(assembly, geometry, joints):
-            piece = mesh.copy().apply_transform(T)
-            if _boxes_apart(still.bounds, piece.bounds) == 0:
-                volumes.append(float((body ^ manifold_of(piece)).volume()))
-    return max(volumes)
+    body = manifold_of(still)
+    volumes = [
+        float((body ^ piece).volume())
+        for _, piece, bounds in _pieces(bodies, geometry, postures, T_palm_stand)
+        if _boxes_apart(still.bounds, bounds) == 0
+    ]
+    return max(volumes, default=0.0)
+
+
+def _pieces(
+    bodies: Sequence[Body], geometry: HandGeometry, postures: Sequence[Array], T_palm_stand: Array
+) -> Iterator[tuple[int, manifold3d.Manifold, Array]]:
+    """Each posture's number and each body there, in the stand's frame, with its bounds (2, 3).
+
+    What no joint moves comes with the first posture alone.
+    """
+    T_stand_palm = np.linalg.inv(T_palm_stand)
+    for number, joints in enumerate(postures):
+        for body in bodies:
+            if number == 0 or not body.still:
+                pose = T_stand_palm @ body_poses(body, geometry, joints[None])[0]
+                piece = body.solid.transform(pose[:3])
+                yield number, piece, np.array(piece.bounding_box()).reshape(2, 3)
 
 
 def _boxes_apart(a: Array, b: Array) -> float:

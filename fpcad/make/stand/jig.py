@@ -24,6 +24,8 @@ RIB_MM, RIB_WIDTH_MM, RIB_STEP_MM = 5.0, 10.0, 2.0
 """Depth of the rib below a foot, width of the first jig's; each further one is wider and fits no narrower channel."""
 TOUCH_MM = 0.02
 """Notches and stop keep that far from the tool: what meets is not to overlap in numbers."""
+KNOB_MM = 0.5
+"""Balls at both ends of the spine stand out by so much: of surfaces that touch along a line, the kernel loses pieces."""
 
 
 def jig_solid(place: JigPlace, tool: CylinderTool, floor_mm: float, number: int) -> Solid:
@@ -34,7 +36,7 @@ def jig_solid(place: JigPlace, tool: CylinderTool, floor_mm: float, number: int)
     stop = rod(
         place.on_axis(place.stop_mm) + place.away, place.on_spine(place.stop_mm), STOP_MM - TOUCH_MM
     )
-    corners = [ball(low, COLUMN_MM), ball(high, SPINE_MM)]
+    corners = [ball(low, COLUMN_MM + KNOB_MM), ball(high, SPINE_MM + KNOB_MM)]
     column = rod(foot_at + np.array([0, 0, FOOT_MM[2] / 2]), low, COLUMN_MM)
     return union(
         [rod(low, high, SPINE_MM), *arms, stop, *corners, column, _foot(place, floor_mm, number)]
@@ -68,7 +70,7 @@ def _foot(place: JigPlace, floor_mm: float, number: int) -> Solid:
 def _arm(place: JigPlace, along: float, radius: float) -> Solid:
     """From the spine to the tool's axis, less a V of a right angle that opens towards the hand."""
     tip, root = place.on_axis(along), place.on_spine(along)
-    arm = rod(tip, root, radius + ARM_MORE_MM).fuse(ball(root, SPINE_MM))
+    arm = rod(tip, root, radius + ARM_MORE_MM)
     return arm.cut(placed(_notch(radius + TOUCH_MM), _notch_frame(place, along)))
 
 

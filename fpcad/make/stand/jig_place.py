@@ -8,7 +8,7 @@ from the pose on until it is drawn away.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -125,17 +125,13 @@ def _places(scene: PoseScene, tool: CylinderTool, floor_mm: float) -> Iterator[J
         for stop, stop_room in stops:
             if stop_room < CLEAR_MM:
                 continue
+            beams: dict[float, float] = {}
             for a, b in pairs:
                 place = JigPlace(scene.pose, away, (a, b), stop, scene.T_stand_tool, 0.0)
-                beam = _frame_room(scene, place, floor_mm)
-                yield JigPlace(
-                    scene.pose,
-                    away,
-                    (a, b),
-                    stop,
-                    scene.T_stand_tool,
-                    min(room[a], room[b], stop_room, beam),
-                )
+                far = max(a, b, key=lambda s, stop=stop: abs(s - stop))
+                if far not in beams:  # the spine runs from the stop to the farther arm
+                    beams[far] = _frame_room(scene, place, floor_mm)
+                yield replace(place, clearance_mm=min(room[a], room[b], stop_room, beams[far]))
 
 
 def _directions(axis: Array) -> Iterator[Array]:

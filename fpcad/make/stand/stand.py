@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from fpcad.errors import MakeError
 from fpcad.make.bom import BomRow
 from fpcad.make.gates.all_gates import check_part
+from fpcad.make.gates.bodies import Body, hand_bodies
 from fpcad.make.gates.finding import Finding, Severity, errors
 from fpcad.make.mesh import INTERFERENCE_MM3, mesh_of
 from fpcad.make.parts.assembly import Assembly
@@ -78,8 +80,9 @@ def make_stand(
         for turn in _turns(flange.screws)
     ]
     chosen = max(tried, key=lambda layout: (len(layout.places), layout.floor_mm))
-    places, jigs, of_jigs = _jigs(spec, geometry, assembly, chosen)
-    bench, of_bench = _bench(spec, geometry, assembly, chosen, places)
+    bodies = hand_bodies(assembly, geometry)
+    places, jigs, of_jigs = _jigs(spec, geometry, bodies, chosen)
+    bench, of_bench = _bench(spec, geometry, bodies, chosen, places)
     return Stand(
         T_palm_stand=chosen.T_palm_stand,
         parts=(*bench, *jigs),
@@ -90,14 +93,19 @@ def make_stand(
 
 
 def _jigs(
-    spec: Spec, geometry: HandGeometry, assembly: Assembly, layout: _Layout
+    spec: Spec, geometry: HandGeometry, bodies: Sequence[Body], layout: _Layout
 ) -> tuple[list[JigPlace], list[Part], list[Finding]]:
     """The jigs that pass their gates and keep clear of the hand's parts."""
     places, jigs, found = [], [], [_nowhere(*lacking) for lacking in layout.lacking.items()]
     for place in layout.places:
         solid = jig_solid(place, spec.tool, layout.floor_mm, len(places))
-        jig, joints = _part(JIG + place.pose, solid, spec), layout.scenes[place.pose].joints
-        gap = least_gap(jig.mesh, place.away, assembly, geometry, joints, layout.T_palm_stand)
+        try:
+            jig = _part(JIG + place.pose, solid, spec)
+        except MakeError as error:  # a hand is a good one without one of its helpers
+            found.append(_unmade(place.pose, error))
+            continue
+        joints = layout.scenes[place.pose].joints
+        gap = least_gap(jig.mesh, place.away, bodies, geometry, joints, layout.T_palm_stand)
         told = _told(jig, gap, check_part(spec, jig))
         found += told
         if not any(f.severity is Severity.WARNING and f.gate == GATE for f in told):
@@ -109,7 +117,7 @@ def _jigs(
 def _bench(
     spec: Spec,
     geometry: HandGeometry,
-    assembly: Assembly,
+    bodies: Sequence[Body],
     layout: _Layout,
     places: Sequence[JigPlace],
 ) -> tuple[list[Part], list[Finding]]:
@@ -123,7 +131,7 @@ def _bench(
     found = []
     for part in bench:
         found += _told(part, LEAST_GAP_MM, check_part(spec, part))
-        shared = shared_volume(part.mesh, assembly, geometry, postures, layout.T_palm_stand)
+        shared = shared_volume(part.mesh, bodies, geometry, postures, layout.T_palm_stand)
         found += _meeting(part, shared)
     return bench, found
 
@@ -229,6 +237,10 @@ def _floor(
 
 def _part(name: str, solid: Solid, spec: Spec) -> Part:
     return Part(name, FIXED_LINK, "endoskeleton", 1, solid, mesh_of(name, solid, spec.print))
+
+
+def _unmade(pose: str, error: MakeError) -> Finding:
+    return Finding(GATE, Severity.WARNING, JIG + pose, 0.0, 1.0, "body", f"left out: {error}")
 
 
 def _nowhere(pose: str, clearance: float) -> Finding:

@@ -8,18 +8,19 @@ import numpy as np
 import pytest
 import trimesh
 
+from fpcad.make.gates.all_gates import PARTS, gate_groups
 from fpcad.make.gates.bodies import body_of, hand_bodies, link_poses
 from fpcad.make.gates.bounds import least_distance
 from fpcad.make.gates.finding import Severity, errors
 from fpcad.make.gates.fixed import check_fixed
 from fpcad.make.gates.joints import check_joints, joint_grid
-from fpcad.make.gates.meeting import meet
+from fpcad.make.gates.meeting import meet, nearby
 from fpcad.make.gates.meetings import check_meetings, tool_bodies, tool_mesh
 from fpcad.make.gates.postures import STEP_RAD, Postures, rest_joints
 from fpcad.make.gates.reach import check_reach
-from fpcad.make.parts.assembly import Assembly, make_assembly
+from fpcad.make.parts.assembly import Assembly
 from fpcad.model.geometry import link_poses as model_poses
-from tests.make.hands import CENTRE, CLAY, TEMPLATE, design, geometry_of
+from tests.make.hands import CENTRE, CLAY, TEMPLATE, assembly_of, design, geometry_of
 
 GEOMETRY = geometry_of(CENTRE)
 HERE = np.eye(4)
@@ -27,7 +28,7 @@ HERE = np.eye(4)
 
 @pytest.fixture(scope="module")
 def assembly():
-    return make_assembly(CLAY, GEOMETRY, lambda _: None)
+    return assembly_of(CENTRE)
 
 
 @pytest.fixture(scope="module")
@@ -116,6 +117,29 @@ def test_a_joint_that_is_stuck_is_refused_with_its_angles(assembly):
     bad = hand_bodies(with_part(assembly, "distal_skin", mesh=longer), GEOMETRY)
     faults = errors(check_joints(bad, GEOMETRY, CLAY.hand))
     assert {f.gate for f in faults} == {"joint"} and "IP " in faults[0].text
+
+
+def test_parts_are_judged_first_and_no_gate_is_left_out(assembly):
+    titles = [title for title, _ in gate_groups(CLAY, assembly, GEOMETRY, {})]
+    reaches = [f"reach of {finger}" for finger in GEOMETRY.fingers]
+    assert titles == [PARTS, "pad", "fixed parts", "tubes", "joints", "at rest", *reaches]
+
+
+def test_what_is_cut_out_nearby_keeps_distances_and_volumes():
+    """A ball in front of a plate, some postures through it."""
+    plate = body_of("plate", "palm", trimesh.creation.box((80.0, 80.0, 4.0)))
+    ball = body_of("ball", "distal", trimesh.creation.icosphere(3, 3.0), finger="index")
+    poses = np.tile(HERE, (12, 1, 1))
+    poses[:, 2, 3] = np.linspace(4.0, 7.0, 12)
+    close = nearby(plate, ball, poses, 1.0)
+    assert close.solid.volume() < 0.1 * plate.solid.volume()
+    for pose in poses:
+        whole, cut = (meet(body, HERE, ball, pose, 1.0) for body in (plate, close))
+        assert cut[0] == pytest.approx(whole[0], abs=1e-9)
+        assert (cut[1] is None) == (whole[1] is None)
+        if whole[1] is not None and cut[1] is not None:
+            assert cut[1].volume_mm3 == pytest.approx(whole[1].volume_mm3)
+    assert nearby(plate, ball, poses[:2], 1.0) is plate
 
 
 def test_fingers_that_cross_at_rest_are_refused_and_the_rest_posture_is_named(bodies):
