@@ -16,16 +16,20 @@ def test_a_hand_that_cannot_be_made_gives_way_to_the_next_best(
     """Modelling itself is left out: it takes a minute, and other tests make hands."""
     asked: list[int] = []
 
-    def make_hand(spec, geometry, out, progress, trajectories, candidate):
+    def made(task, order, cpu_s, progress):
+        _, _, out, _, candidate = order
         asked.append(candidate)
-        for name in ("hand/transmission.yaml", "parts/bom.csv"):
-            (out / name).parent.mkdir(parents=True, exist_ok=True)
-            (out / name).touch()
+        files = [
+            out / name for name in ("hand/transmission.yaml", "parts/bom.csv", "parts/old.stl")
+        ]
+        for file in files:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.touch()
         if len(asked) < 3:
             raise MakeError(f"a wall of 0.{len(asked)} mm")
-        return [out / "parts" / "bom.csv"]
+        return files[:2]
 
-    monkeypatch.setattr(stage, "make_hand", make_hand)
+    monkeypatch.setattr(stage, "run_apart", made)
     build = small_build(tmp_path, kernel_cache)
     sampling = build.spec.sampling.model_copy(update={"candidates": 4})
     build.spec = build.spec.model_copy(update={"sampling": sampling})
@@ -36,3 +40,4 @@ def test_a_hand_that_cannot_be_made_gives_way_to_the_next_best(
     told = [rows[candidate]["reason"] for candidate in asked]
     assert told == ["a wall of 0.1 mm", "a wall of 0.2 mm", ""]
     assert [rows[candidate]["makeable"] for candidate in asked] == [False, False, True]
+    assert not (build.folder / "parts" / "old.stl").exists()  # of a hand that was refused
