@@ -213,8 +213,14 @@ def _dorsal_arm(d: Dimensions) -> Solid:
 
 
 def _arm(d: Dimensions, low: float, high: float) -> Solid:
-    """What carries a hub's load to the neck, where no pulley is in the way."""
+    """What carries a hub's load to the neck, where no pulley is in the way.
+
+    The palm leaves it the cavity about the flexion axis, and beyond that the neck's room.
+    """
     arm = extruded(arm_outline(d.mcp, d.widest_abduction), low, high)
+    cavity = rod((0, -FAR_MM, 0), (0, FAR_MM, 0), d.mcp.cavity - d.mcp.gap)
+    neck = box((-FAR_MM, -d.neck_room, -FAR_MM), (FAR_MM, d.neck_room, FAR_MM))
+    arm = arm.intersect(cavity.fuse(neck))
     return arm.fuse(_bar(d, low, high, 0.0)).intersect(ball((0, 0, 0), d.root - d.clearance))
 
 

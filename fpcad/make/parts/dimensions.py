@@ -64,6 +64,11 @@ class Dimensions:
         return self.bone - FLAT_MM
 
     @property
+    def neck_room(self) -> float:
+        """Half width of what the palm leaves to the neck on its whole way between the ears."""
+        return 0.7 * self.bone
+
+    @property
     def widest_abduction(self) -> float:
         """Largest abduction to either side [rad]."""
         return max(abs(angle) for angle in self.mcp_abd)

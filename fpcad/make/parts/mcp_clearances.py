@@ -30,15 +30,6 @@ def spoke_back(mcp: Mcp, widest_abduction: float) -> float:
     return SPOKE_BACK_MM * cosine + mcp.drum_side * sine
 
 
-def hub_back(mcp: Mcp, widest_abduction: float) -> float:
-    """Rearmost x [mm], in the cross, of what is as wide as the hubs and abducted into the IP strands' way.
-
-    A side y = boss from x = 0 on enters that way, which begins at |y| = boss, at boss tan(u / 2) from
-    its start, which lies there then.
-    """
-    return -mcp.boss * math.tan(widest_abduction / 2)
-
-
 def horn_inner(mcp: Mcp, widest_abduction: float) -> float:
     """Inner |y| [mm] of the discs' horns: abducted, they pass beside the IP strands."""
     cosine, sine = math.cos(widest_abduction), math.sin(widest_abduction)

@@ -13,7 +13,6 @@ from fpcad.make.parts.catalogue import Tube, lookup
 from fpcad.make.parts.dimensions import Dimensions
 from fpcad.make.parts.flange import palm_seat
 from fpcad.make.parts.flange_dimensions import FlangeDimensions
-from fpcad.make.parts.mcp_clearances import arm_end
 from fpcad.make.parts.palm_pad import pad_place, pad_recess
 from fpcad.make.parts.palm_room import below_roof, link_room
 from fpcad.make.parts.routing import EXIT_MM, TUBE, TUBE_SEAT_MM, dorsal_angle, strands
@@ -121,14 +120,9 @@ def _near_link_room(d: Dimensions) -> Solid:
 
 
 def _neck_room(d: Dimensions) -> Solid:
-    """What the proximal bone's neck and arms pass between the palm's ears."""
-    m, high = d.mcp, max(d.mcp.arm_outer, d.mcp.hub_outer) + d.clearance
-    neck, arms = (0.7 * d.bone, d.shaft_start), (m.disc_rim, arm_end(m, d.widest_abduction))
-    sweeps = [
-        swept_link((0.0, reach + d.clearance), half + d.clearance, high, d.mcp_flex, d.mcp_abd)
-        for half, reach in (neck, arms)
-    ]
-    return union(sweeps)
+    """What the proximal bone's neck passes between the palm's ears."""
+    reach, high = (0.0, d.shaft_start + d.clearance), d.mcp.arm_outer + d.clearance
+    return swept_link(reach, d.neck_room + d.clearance, high, d.mcp_flex, d.mcp_abd)
 
 
 def _turning_room(d: Dimensions) -> Solid:

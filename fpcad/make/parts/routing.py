@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.make.parts.dimensions import Dimensions
-from fpcad.make.parts.mcp_clearances import hub_back
+from fpcad.make.parts.mcp_clearances import SPOKE_BACK_MM
 from fpcad.make.parts.mcp_dimensions import Mcp
 
 Array = NDArray[np.float64]
@@ -98,7 +98,7 @@ def _at(radius: float, angle: float) -> tuple[float, float]:
 def _through_cross(d: Dimensions, dorsal: float, sense: int) -> tuple[tuple[float, float], ...]:
     """Way of an IP strand: straight where the turning cross lets it pass, else by a guide."""
     m, exit_point = d.mcp, _exit(dorsal, sense)
-    low, high = free_tangents(m, d.mcp_flex, d.widest_abduction, sense)
+    low, high = free_tangents(m, d.mcp_flex, sense)
     wish = _tangent(exit_point, m.drum_radius, sense)
     wish += 2 * math.pi * round(((low + high) / 2 - wish) / (2 * math.pi))
     tangent = min(max(wish, low), high)
@@ -108,16 +108,14 @@ def _through_cross(d: Dimensions, dorsal: float, sense: int) -> tuple[tuple[floa
     return _at(m.drum_radius, tangent), _at(GUIDE_MM, angle), exit_point
 
 
-def free_tangents(
-    m: Mcp, flexion: tuple[float, float], widest_abduction: float, sense: int
-) -> tuple[float, float]:
+def free_tangents(m: Mcp, flexion: tuple[float, float], sense: int) -> tuple[float, float]:
     """Least and greatest angle [rad] at which an IP strand may leave the drum.
 
     Between the palmar side of cross and discs at full flexion and their dorsal side at full
     extension, at every radius that they sweep, and with a gap.
     """
     lows, highs = [], []
-    for x, z in _corners(m, widest_abduction):
+    for x, z in _corners(m):
         radius = math.hypot(x, z)
         margin = (m.strand + m.gap) / radius
         lead = sense * math.acos(m.drum_radius / radius)
@@ -126,12 +124,11 @@ def free_tangents(
     return max(lows), min(highs)
 
 
-def _corners(m: Mcp, widest_abduction: float) -> list[tuple[float, float]]:
+def _corners(m: Mcp) -> list[tuple[float, float]]:
     """Rearmost points (x, z) of cross and discs in the plane of the IP strands, dorsal side."""
-    hubs = hub_back(m, widest_abduction)
     return [
         (m.bar_back, m.bridge_inner),
         (m.bar_back, m.bridge_outer),
-        (hubs, m.disc_inner),
-        (hubs, max(m.arm_outer, m.hub_outer)),
+        (SPOKE_BACK_MM, m.disc_inner),
+        (SPOKE_BACK_MM, m.arm_outer),
     ]
