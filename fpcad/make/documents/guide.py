@@ -18,6 +18,7 @@ from fpcad.make.gates.postures import rest_joints
 from fpcad.make.loads.strands import PRETENSION_N
 from fpcad.make.parts.assembly import Assembly
 from fpcad.make.parts.catalogue import Tendon, lookup
+from fpcad.make.parts.materials import matters
 from fpcad.make.stand.stand import JIG, Stand, bench_steps
 from fpcad.make.stand.views import stand_pieces
 from fpcad.model.geometry import HandGeometry
@@ -112,7 +113,7 @@ def guide_text(
             for line in (f"![{title}]({PICTURES}/{name}.png)", "", f"{title}.", "")
         ]
     lines += ["## Print", "", *_print_table(spec, assembly), ""]
-    lines += ["## Buy", "", *_bought_table(assembly), ""]
+    lines += [*_ordered(spec, assembly), "## Buy", "", *_bought_table(assembly), ""]
     lines += ["## Tendons", "", *_tendon_table(spec), ""]
     lines += ["## Steps", "", *steps(spec, assembly, PRETENSION_N), ""]
     if stand and stand.jigs:
@@ -133,6 +134,23 @@ def _print_table(spec: Spec, assembly: Assembly) -> Iterator[str]:
         laid = part_orientation(part, spec.print)
         figures = f"{laid.height_mm:.1f} | {laid.overhang_mm2:.0f} | {laid.base_mm2:.0f}"
         yield f"| {part.name} | {part.count} | {part.material} | {figures} |"
+
+
+def _ordered(spec: Spec, assembly: Assembly) -> Iterator[str]:
+    """What somebody else makes of metal, nothing where all is printed."""
+    ordered = [part for part in assembly.parts if part.material == "metal"]
+    if not ordered:
+        return
+    metal = matters(spec.print)["metal"].name
+    yield from (
+        "## Order",
+        "",
+        f"Metal prints of {metal}, from `step/`. Ream their holes to the pins.",
+        "",
+    )
+    yield from ("| part | count | file |", "|---|---|---|")
+    yield from (f"| {part.name} | {part.count} | step/{part.name}.step |" for part in ordered)
+    yield ""
 
 
 def _bought_table(assembly: Assembly) -> Iterator[str]:
