@@ -44,7 +44,7 @@ static void exchange(struct controller *controller)
     motor_rates_of(&setup->transmission, setup->joints, rate, goals.velocity);
     motor_rates_of(&setup->transmission, setup->joints, follower->preload, stretch);
     for (uint8_t i = 0; i < setup->joints; i++) {
-        goals.position[i] = controller->goal[i] + stretch[i];
+        goals.position[i] = controller->told[i] = controller->goal[i] + stretch[i];
     }
     controller->board->exchange(controller->board->context, &goals, &controller->readings);
     measure(controller);
@@ -114,7 +114,8 @@ static void supervise(struct controller *controller)
     const struct follower *follower = &controller->follower;
     const int32_t *turned = controller->readings.position;
     if (guard_tracking(follower, controller->measured) != CAUSE_NONE ||
-        guard_standstill(&controller->guard, controller->setup->joints, turned, controller->goal) != CAUSE_NONE) {
+        guard_standstill(&controller->guard, controller->setup->joints, turned, controller->goal, controller->told) !=
+            CAUSE_NONE) {
         fault(controller, CAUSE_TRACKING);
     } else if (follower_arrived(follower)) {
         controller->state = STATE_READY;

@@ -21,6 +21,7 @@ struct controller {
     uint64_t start_us;
     int32_t offset[MAX_JOINTS];   /* the motors' zeros in use */
     int32_t goal[MAX_JOINTS];     /* of the motors, without preload */
+    int32_t told[MAX_JOINTS];     /* what the motors were told: the same with preload */
     int32_t measured[MAX_JOINTS]; /* joints, from the motors' encoders */
     struct motor_readings readings;
     struct follower follower;

@@ -35,14 +35,16 @@ uint8_t guard_motors(
 }
 
 uint8_t guard_standstill(
-    struct guard *guard, uint8_t joints, const int32_t *reading, const int32_t *goal)
+    struct guard *guard, uint8_t joints, const int32_t *reading, const int32_t *goal, const int32_t *told)
 {
     uint8_t cause = CAUSE_NONE;
     for (uint8_t i = 0; i < joints; i++) {
         if (reading[i] != guard->still_reading[i]) {
             guard->still_reading[i] = reading[i];
             guard->still_goal[i] = goal[i];
-        } else if (magnitude(goal[i] - guard->still_goal[i]) > STANDSTILL) {
+            guard->still_told[i] = told[i];
+        } else if (magnitude(goal[i] - guard->still_goal[i]) > STANDSTILL &&
+                   magnitude(told[i] - guard->still_told[i]) > STANDSTILL) {
             cause = CAUSE_TRACKING;
         }
     }
