@@ -1,6 +1,8 @@
 """Make so many hands of a spec's box and write what became of them as a table.
 
-nice .venv/bin/python -m benchmarks.parts clay --count 200 --out docs/parts-of-200-hands.md
+nice .venv/bin/python -m benchmarks.parts clay --count 200 --out docs/parts-of-hands.md
+
+Each hand is made in a process of its own, and what became of it is kept: a run that was stopped goes on.
 """
 
 from __future__ import annotations
@@ -13,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.parts.candidates import Outcome, attempt, designs, kind_of
+from benchmarks.parts.candidates import Outcome, attempt_apart, designs, kind_of
 from fpcad.spec.load import load_spec
-from fpcad.store import write_whole
+from fpcad.store import read_json, write_json, write_whole
 
 
 def report(outcomes: list[Outcome], name: str, seed: int) -> str:
@@ -54,12 +56,16 @@ def main() -> None:
     parser.add_argument("name")
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kept", type=Path, default=Path("build/parts-of-hands"))
     parser.add_argument("--out", type=Path, default=Path("build/parts-of-hands.md"))
     asked = parser.parse_args()
     spec = load_spec(Path("designs") / f"{asked.name}.yaml")
     outcomes = []
     for number, named in enumerate(designs(spec, asked.count, asked.seed, corners=True), start=1):
-        outcomes.append(attempt(spec, named))
+        kept = asked.kept / f"{number}.json"
+        if not kept.is_file():
+            write_json(kept, asdict(attempt_apart(spec, named)))
+        outcomes.append(Outcome(**read_json(kept)))
         print(number, json.dumps(asdict(outcomes[-1])), flush=True)
         write_whole(asked.out, report(outcomes, asked.name, asked.seed))
 

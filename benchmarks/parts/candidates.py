@@ -11,13 +11,14 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from fpcad.errors import FpcadError
+from fpcad.errors import FpcadError, MakeError
 from fpcad.make.gates.all_gates import gate_groups
 from fpcad.make.gates.early import check_early
 from fpcad.make.gates.finding import Severity, refuse_errors
 from fpcad.make.parts.assembly import make_assembly
 from fpcad.model.geometry import hand_geometry
 from fpcad.model.hand import hand_template
+from fpcad.pipeline.apart import Tell, run_apart
 from fpcad.sample.space import design_space
 from fpcad.spec.schema import Spec
 
@@ -82,6 +83,18 @@ def attempt(spec: Spec, named: NDArray[np.float64], skipped: tuple[str, ...] = S
         verdict, reason = "crashed", f"{type(error).__name__}: {error}"
     seconds = time.process_time() - started
     return Outcome(tuple(named.tolist()), verdict, reason, warnings, seconds)
+
+
+def attempt_apart(spec: Spec, named: NDArray[np.float64], cpu_s: int = 900) -> Outcome:
+    """As `attempt`, in a process that is ended after so much processor time: then the hand is `crashed`."""
+    try:
+        return run_apart(_attempt, (spec, named), cpu_s, lambda _: None)
+    except MakeError as error:
+        return Outcome(tuple(named.tolist()), "crashed", str(error), 0, float(cpu_s))
+
+
+def _attempt(_: Tell, asked: tuple[Spec, NDArray[np.float64]]) -> Outcome:
+    return attempt(*asked)
 
 
 def kind_of(reason: str) -> str:
