@@ -101,6 +101,18 @@ def test_a_grip_that_jams_on_its_tool_is_no_fault():
     assert played.final_state == "READY"
 
 
+def test_a_motor_that_preload_holds_where_it_is_has_no_stuck_encoder():
+    line = VirtualLine(controller())
+    driver = FirmwareDriver(line, hand_limits(), line.clock)
+    driver.ready(clear=False)
+    path = swing(4.0, 121, amplitude=0.25)
+    against = path.position[0] - path.position
+    held = Knots(path.time_s, path.position, path.velocity, path.acceleration, against)
+    for motor in range(12):
+        line.device.plant.jam(motor)
+    assert driver.play(held, Watch(lambda _s: None, lambda: 0)).final_state == "READY"
+
+
 BEYOND = [
     ([], 0, [0] * 11 + [200], 11),
     ([0], 100_000, [0, counts(0.15)[1], *[0] * 10], 1),
