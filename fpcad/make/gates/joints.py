@@ -7,10 +7,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from fpcad.make.gates.approach import closest_approach
 from fpcad.make.gates.bodies import Body, body_poses
-from fpcad.make.gates.bounds import box_gap, least_distance, swept_box
+from fpcad.make.gates.bounds import box_gap, swept_box
 from fpcad.make.gates.finding import Finding, Severity, point
-from fpcad.make.gates.meeting import meet, nearby
+from fpcad.make.gates.meeting import Overlap
 from fpcad.make.gates.postures import STEP_RAD
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.hand import Hand
@@ -48,31 +49,26 @@ def check_joints(bodies: Sequence[Body], geometry: HandGeometry, hand: Hand) -> 
         gap, closest = least.setdefault(between, (TOLD_MM, "none closer"))
         if box_gap(swept_box(a, T_a), swept_box(b, T_b)) > gap:
             continue
-        bound = least_distance(a, T_a, b, T_b)
-        near = np.flatnonzero(bound < gap)
-        close = nearby(a, b, T_b[near], gap)
-        for k in near:
-            if bound[k] >= gap:
-                continue
-            own, shared = meet(close, T_a[k], b, T_b[k], gap)
-            if shared is not None:
-                angles = joints[k, geometry.fingers.index(str(b.finger))] * DEG_PER_RAD
-                text = (
-                    "they share {:.3g} mm^3 at flexion {:.0f}, abduction {:.0f}, "
-                    "IP {:.0f} deg".format(shared.volume_mm3, *angles)
-                )
-                pair, where = f"{a.name} and {b.name}", point(shared.at_mm)
-                volume = shared.volume_mm3
-                found.append(Finding(GATE, Severity.ERROR, pair, volume, 0.0, "mm^3", text, where))
-                break
-            if own < gap:
-                gap, closest = own, f"{a.name} and {b.name}"
+        approach = closest_approach(a, T_a, b, T_b, gap)
+        if approach.overlap is not None:
+            degrees = joints[approach.posture, geometry.fingers.index(str(b.finger))] * DEG_PER_RAD
+            found.append(_overlap(f"{a.name} and {b.name}", approach.overlap, degrees))
+        elif approach.gap_mm < gap:
+            gap, closest = approach.gap_mm, f"{a.name} and {b.name}"
         least[between] = gap, closest
     for between, (gap, closest) in least.items():
         text = f"{'more than ' if gap == TOLD_MM else ''}{gap:.2f} mm over the joints' limits"
         told = between if gap == TOLD_MM else closest
         found.append(Finding(GATE, Severity.FIGURE, told, gap, 0.0, "mm", text))
     return found
+
+
+def _overlap(pair: str, overlap: Overlap, degrees: Array) -> Finding:
+    volume = overlap.volume_mm3
+    text = "they share {:.3g} mm^3 at flexion {:.0f}, abduction {:.0f}, IP {:.0f} deg".format(
+        volume, *degrees
+    )
+    return Finding(GATE, Severity.ERROR, pair, volume, 0.0, "mm^3", text, point(overlap.at_mm))
 
 
 def _pairs(

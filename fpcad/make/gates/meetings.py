@@ -13,10 +13,11 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
+from fpcad.make.gates.approach import closest_approach
 from fpcad.make.gates.bodies import TOOL, Body, body_of, body_poses
-from fpcad.make.gates.bounds import box_gap, least_distance, swept_box
+from fpcad.make.gates.bounds import box_gap, swept_box
 from fpcad.make.gates.finding import Finding, Severity, point
-from fpcad.make.gates.meeting import meet, nearby
+from fpcad.make.gates.meeting import Overlap
 from fpcad.make.gates.postures import Postures
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
@@ -70,19 +71,13 @@ def check_meetings(
     for a, b in _pairs(bodies, tools, postures):
         if box_gap(boxes[id(a)], boxes[id(b)]) > least:
             continue
-        T_a, T_b = poses[id(a)], poses[id(b)]
-        bound = least_distance(a, T_a, b, T_b)
-        near = np.flatnonzero(bound < least)
-        close = nearby(a, b, T_b[near], least)
-        for k in near:
-            if bound[k] >= least:
-                continue
-            gap, shared = meet(close, T_a[k], b, T_b[k], least)
-            if shared is not None:
-                found.append(_meeting(postures, a, b, shared.volume_mm3, shared.at_mm, int(k)))
-                break
-            if gap < least and not _touches(a, b, postures):
-                least, closest = gap, f"{a.name} and {b.name}"
+        approach = closest_approach(a, poses[id(a)], b, poses[id(b)], least)
+        if approach.overlap is not None:
+            found.append(
+                _meeting(postures, f"{a.name} and {b.name}", approach.overlap, approach.posture)
+            )
+        elif approach.gap_mm < least and not _touches(a, b, postures):
+            least, closest = approach.gap_mm, f"{a.name} and {b.name}"
     if not found:
         text = f"{'more than ' if least == TOLD_MM else ''}{least:.2f} mm between {closest}"
         told = "hand" if least == TOLD_MM else closest
@@ -110,13 +105,11 @@ def _touches(a: Body, b: Body, postures: Postures) -> bool:
     return b.link == TOOL and (a.finger, a.link) in postures.touching
 
 
-def _meeting(
-    postures: Postures, a: Body, b: Body, volume: float, at: Array, number: int
-) -> Finding:
+def _meeting(postures: Postures, pair: str, overlap: Overlap, number: int) -> Finding:
     degrees = ""
     if len(postures.joints) > 1:
         degrees = f", posture {number + 1} of {len(postures.joints)}"
     advice = "; hand.rest_posture_deg decides" if postures.tool is None else ""
+    volume = overlap.volume_mm3
     text = f"they share {volume:.3g} mm^3 {postures.name}{degrees}{advice}"
-    pair = f"{a.name} and {b.name}"
-    return Finding(GATE, Severity.ERROR, pair, volume, 0.0, "mm^3", text, point(at))
+    return Finding(GATE, Severity.ERROR, pair, volume, 0.0, "mm^3", text, point(overlap.at_mm))

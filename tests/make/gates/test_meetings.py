@@ -9,6 +9,7 @@ import pytest
 import trimesh
 
 from fpcad.make.gates.all_gates import PARTS, gate_groups
+from fpcad.make.gates.approach import closest_approach
 from fpcad.make.gates.bodies import body_of, hand_bodies, link_poses
 from fpcad.make.gates.bounds import least_distance
 from fpcad.make.gates.finding import Severity, errors
@@ -83,6 +84,23 @@ def test_no_body_is_nearer_than_its_bound(bodies):
     bound = least_distance(palm, np.broadcast_to(HERE, poses.shape), skin, poses)
     real = [meet(palm, HERE, skin, pose, 10.0)[0] for pose in poses]
     assert np.all(np.minimum(bound, 10.0) <= np.array(real) + 1e-9) and (bound > 0).any()
+
+
+@pytest.mark.parametrize(("within", "least"), [(0.1, 0.1), (0.6, 0.25), (5.0, 0.25)])
+def test_the_closest_approach_is_the_least_distance_of_all_postures(within, least):
+    """A cube above another one, at heights of which the least leaves 0.25 mm."""
+    poses = np.tile(HERE, (30, 1, 1))
+    poses[:, 2, 3] = np.random.default_rng(3).permutation(np.linspace(3.25, 6.0, 30))
+    poses[:, :2, 3] = np.random.default_rng(4).uniform(-1, 1, (30, 2))
+    found = closest_approach(cube(4), np.broadcast_to(HERE, poses.shape), cube(2), poses, within)
+    assert found.overlap is None and found.gap_mm == pytest.approx(least)
+
+
+def test_an_approach_ends_at_an_overlap_and_names_the_posture():
+    poses = np.stack([shifted(x) for x in (4.0, 3.5, 2.5, 2.0)])
+    found = closest_approach(cube(4), np.tile(HERE, (4, 1, 1)), cube(2), poses, 1.0)
+    assert found.posture == 2 and found.gap_mm == 0
+    assert found.overlap and found.overlap.volume_mm3 == pytest.approx(2)
 
 
 def test_a_joints_grid_has_its_limits_its_rest_and_small_steps():
