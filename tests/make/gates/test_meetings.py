@@ -92,13 +92,15 @@ def test_the_closest_approach_is_the_least_distance_of_all_postures(within, leas
     poses = np.tile(HERE, (30, 1, 1))
     poses[:, 2, 3] = np.random.default_rng(3).permutation(np.linspace(3.25, 6.0, 30))
     poses[:, :2, 3] = np.random.default_rng(4).uniform(-1, 1, (30, 2))
-    found = closest_approach(cube(4), np.broadcast_to(HERE, poses.shape), cube(2), poses, within)
+    moved = replace(cube(2), finger="index")
+    found = closest_approach(cube(4), np.broadcast_to(HERE, poses.shape), moved, poses, within)
     assert found.overlap is None and found.gap_mm == pytest.approx(least)
 
 
 def test_an_approach_ends_at_an_overlap_and_names_the_posture():
     poses = np.stack([shifted(x) for x in (4.0, 3.5, 2.5, 2.0)])
-    found = closest_approach(cube(4), np.tile(HERE, (4, 1, 1)), cube(2), poses, 1.0)
+    moved = replace(cube(2), finger="index")
+    found = closest_approach(cube(4), np.tile(HERE, (4, 1, 1)), moved, poses, 1.0)
     assert found.posture == 2 and found.gap_mm == 0
     assert found.overlap and found.overlap.volume_mm3 == pytest.approx(2)
 
