@@ -14,6 +14,7 @@ from fpcad.make.documents.guide import write_guide
 from fpcad.make.documents.inventory import write_inventory
 from fpcad.make.documents.print_ready import write_print_files
 from fpcad.make.documents.stamp import Stamp
+from fpcad.make.documents.stand_file import write_stand
 from fpcad.make.documents.step_files import assembly_step, part_step
 from fpcad.make.gates.all_gates import pass_gates
 from fpcad.make.gates.finding import Severity
@@ -30,8 +31,9 @@ from fpcad.make.parts.dimensions import finger_dimensions
 from fpcad.make.parts.materials import densities
 from fpcad.make.parts.mounting import mounting
 from fpcad.make.parts.tendon_lengths import pieces_to_cut
-from fpcad.make.stand.stand import GATE as JIG_GATE
-from fpcad.make.stand.stand import Stand, make_stand, stand_rows
+from fpcad.make.stand.gates import GATE as JIG_GATE
+from fpcad.make.stand.stand import Stand, make_stand
+from fpcad.make.stand.steps import stand_rows
 from fpcad.make.trajectory import Trajectory
 from fpcad.make.transmission_file import transmission_yaml
 from fpcad.model.geometry import HandGeometry
@@ -99,6 +101,8 @@ def write_parts(
         solid = part_step(part.name, part.solid)
         files.append(stamp.write(folder / "step" / f"{part.name}.step", solid))
     files += write_print_files(helpers, spec.print, folder, stamp)
+    if stand:
+        files.append(write_stand(stand, spec.print, folder, stamp))
     for part in assembly.parts:
         mesh = stl_bytes(part.mesh)
         files.append(stamp.write(folder / part.material / f"{part.name}.stl", mesh))

@@ -19,7 +19,8 @@ from fpcad.make.loads.strands import PRETENSION_N
 from fpcad.make.parts.assembly import Assembly
 from fpcad.make.parts.catalogue import Tendon, lookup
 from fpcad.make.parts.materials import matters
-from fpcad.make.stand.stand import JIG, Stand, bench_steps
+from fpcad.make.stand.stand import JIG, Stand
+from fpcad.make.stand.steps import bench_steps
 from fpcad.make.stand.views import stand_pieces
 from fpcad.model.geometry import HandGeometry
 from fpcad.model.transmission import finger_transmission

@@ -77,7 +77,7 @@ def _read_part(row: Mapping[str, Any], folder: Path) -> Part:
         material=row["material"],
         count=int(row["count"]),
         solid=read_step(folder / row["solid"]),
-        mesh=_mesh(folder / row["mesh"]),
+        mesh=read_mesh(folder / row["mesh"]),
         places=tuple(np.array(T, dtype=float) for T in row["T_link_part"]),
         T_bed_part=np.array(row["T_bed_part"], dtype=float),
     )
@@ -87,11 +87,11 @@ def _read_bought(row: Mapping[str, Any], folder: Path) -> BoughtItem:
     same = {key: row[key] for key in ("name", "kind", "size", "link", "count", "mass_g")}
     places = tuple(np.array(T, dtype=float) for T in row["T_link_item"])
     return BoughtItem(
-        **same, length_mm=row["length_mm"], places=places, mesh=_mesh(folder / row["mesh"])
+        **same, length_mm=row["length_mm"], places=places, mesh=read_mesh(folder / row["mesh"])
     )
 
 
-def _mesh(file: Path) -> trimesh.Trimesh:
+def read_mesh(file: Path) -> trimesh.Trimesh:
     """The triangles of an STL file, corners joined, without those that its single floats flattened."""
     try:
         mesh = trimesh.load_mesh(file)

@@ -7,11 +7,14 @@ from pathlib import Path
 
 from fpcad.errors import StoreError
 from fpcad.make.documents.inventory import FILE, read_inventory
+from fpcad.make.documents.stand_file import FILE as STAND
+from fpcad.make.documents.stand_file import read_stand
 from fpcad.make.gates.all_gates import PARTS, gate_groups
 from fpcad.make.gates.finding import Finding, errors
 from fpcad.make.gates.reach import SOME
 from fpcad.make.loads.check import TITLE, load_findings
 from fpcad.make.loads.hand import hand_loads
+from fpcad.make.stand.stand import check_stand
 from fpcad.make.trajectory_file import read_trajectory
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
@@ -36,4 +39,7 @@ def recheck(
         yield title, found
         if title == PARTS and errors(found):  # broken meshes have no distances to measure
             return
+    if (parts / STAND).is_file():
+        stand = read_stand(spec, geometry, trajectories, parts)
+        yield "bench stand", check_stand(spec, geometry, assembly, stand)
     yield TITLE, load_findings(hand_loads(spec, assembly, geometry, trajectories))

@@ -10,17 +10,15 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from fpcad.errors import MakeError
-from fpcad.make.bom import BomRow
-from fpcad.make.gates.all_gates import check_part
-from fpcad.make.gates.bodies import Body, hand_bodies
-from fpcad.make.gates.finding import Finding, Severity, errors
-from fpcad.make.mesh import INTERFERENCE_MM3, mesh_of
+from fpcad.make.gates.bodies import hand_bodies
+from fpcad.make.gates.finding import Finding, Severity
+from fpcad.make.mesh import mesh_of
 from fpcad.make.parts.assembly import Assembly
-from fpcad.make.parts.catalogue import Flange, Screw, lookup
+from fpcad.make.parts.catalogue import Flange, lookup
 from fpcad.make.parts.part import FIXED_LINK, Part
 from fpcad.make.parts.solids import Solid
-from fpcad.make.stand.bench import AROUND_MM, WALL_MM, bench_solids
-from fpcad.make.stand.clear import least_gap, shared_volume
+from fpcad.make.stand.bench import AROUND_MM, bench_solids
+from fpcad.make.stand.gates import GATE, BoltedHand, check_bench, check_jig, left_out
 from fpcad.make.stand.jig import jig_solid
 from fpcad.make.stand.jig_place import CLEAR_MM, JigPlace, find_place
 from fpcad.make.stand.scene import PoseScene, moved, pose_scene, stand_frame
@@ -30,12 +28,9 @@ from fpcad.spec.schema import Spec
 
 Array = NDArray[np.float64]
 
-GATE = "jig"
 BENCH, FRONT, JIG = "bench_stand", "bench_front", "jig_"
 ABOVE_MM = 8.0
 """Hand and tool keep that far from the stand's plate."""
-LEAST_GAP_MM = 0.5
-"""What a jig must keep from the parts themselves, which lie within the capsules that it was placed by."""
 
 
 @dataclass(frozen=True)
@@ -80,9 +75,9 @@ def make_stand(
         for turn in _turns(flange.screws)
     ]
     chosen = max(tried, key=lambda layout: (len(layout.places), layout.floor_mm))
-    bodies = hand_bodies(assembly, geometry)
-    places, jigs, of_jigs = _jigs(spec, geometry, bodies, chosen)
-    bench, of_bench = _bench(spec, geometry, bodies, chosen, places)
+    hand = BoltedHand(hand_bodies(assembly, geometry), geometry, chosen.T_palm_stand)
+    places, jigs, of_jigs = _jigs(spec, hand, chosen)
+    bench, of_bench = _bench(spec, hand, chosen, places)
     return Stand(
         T_palm_stand=chosen.T_palm_stand,
         parts=(*bench, *jigs),
@@ -93,7 +88,7 @@ def make_stand(
 
 
 def _jigs(
-    spec: Spec, geometry: HandGeometry, bodies: Sequence[Body], layout: _Layout
+    spec: Spec, hand: BoltedHand, layout: _Layout
 ) -> tuple[list[JigPlace], list[Part], list[Finding]]:
     """The jigs that pass their gates and keep clear of the hand's parts."""
     places, jigs, found = [], [], [_nowhere(*lacking) for lacking in layout.lacking.items()]
@@ -104,22 +99,16 @@ def _jigs(
         except MakeError as error:  # a hand is a good one without one of its helpers
             found.append(_unmade(place.pose, error))
             continue
-        joints = layout.scenes[place.pose].joints
-        gap = least_gap(jig.mesh, place.away, bodies, geometry, joints, layout.T_palm_stand)
-        told = _told(jig, gap, check_part(spec, jig))
+        told = check_jig(spec, jig, place.away, layout.scenes[place.pose].joints, hand)
         found += told
-        if not any(f.severity is Severity.WARNING and f.gate == GATE for f in told):
+        if not left_out(told):
             places.append(place)
             jigs.append(jig)
     return places, jigs, found
 
 
 def _bench(
-    spec: Spec,
-    geometry: HandGeometry,
-    bodies: Sequence[Body],
-    layout: _Layout,
-    places: Sequence[JigPlace],
+    spec: Spec, hand: BoltedHand, layout: _Layout, places: Sequence[JigPlace]
 ) -> tuple[list[Part], list[Finding]]:
     """The stand with channels for all jigs."""
     flange = lookup("flanges", Flange, spec.mount.flange)
@@ -128,12 +117,19 @@ def _bench(
     names = (BENCH, FRONT)[: len(solids)]
     bench = [_part(name, solid, spec) for name, solid in zip(names, solids, strict=True)]
     postures = [joints for place in places for joints in layout.scenes[place.pose].joints]
-    found = []
-    for part in bench:
-        found += _told(part, LEAST_GAP_MM, check_part(spec, part))
-        shared = shared_volume(part.mesh, bodies, geometry, postures, layout.T_palm_stand)
-        found += _meeting(part, shared)
-    return bench, found
+    return bench, [f for part in bench for f in check_bench(spec, part, postures, hand)]
+
+
+def check_stand(
+    spec: Spec, geometry: HandGeometry, assembly: Assembly, stand: Stand
+) -> list[Finding]:
+    """All gates of the parts that a stand has."""
+    hand = BoltedHand(hand_bodies(assembly, geometry), geometry, stand.T_palm_stand)
+    postures = [joints for scene in stand.scenes.values() for joints in scene.joints]
+    found = [f for part in stand.bench for f in check_bench(spec, part, postures, hand)]
+    for pose, jig in stand.jigs.items():
+        found += check_jig(spec, jig, stand.away[pose], stand.scenes[pose].joints, hand)
+    return found
 
 
 @dataclass(frozen=True)
@@ -176,46 +172,6 @@ def _turns(count: int) -> Iterator[Array]:
         yield turn
 
 
-def stand_rows(spec: Spec) -> list[BomRow]:
-    """What is bought for the stand."""
-    flange = lookup("flanges", Flange, spec.mount.flange)
-    screw = lookup("screws", Screw, flange.screw)
-    size = f"{screw.size} x {flange.disc_mm + WALL_MM + 10:g} mm or more (nuts where the base has none)"
-    row = BomRow(
-        "stand_screw",
-        "bought",
-        flange.screws,
-        size,
-        "",
-        "",
-        "",
-        "",
-        "",
-        screw.source,
-        "hand to stand",
-    )
-    band = BomRow("rubber_band", "bought", 2, "60 mm", "", "", "", "", "", "", "tool to jig")
-    return [row, band]
-
-
-def bench_steps(stand: Stand) -> list[str]:
-    """How the stand is used, in Markdown."""
-    if not stand.parts:
-        return []
-    joined = f" Lower `{FRONT}` onto the tongue of `{BENCH}`." if len(stand.bench) > 1 else ""
-    lines = [
-        f"1. Bolt the hand by its base to `{BENCH}`, the palm forward.{joined}",
-        "2. `fpcad run-trajectory ... --to-start --wait-for-tool` leads the hand to the pose and waits, its grip open.",
-    ]
-    jigs = ", ".join(f"`{JIG}{pose}`" for pose in stand.jigs)
-    lines += [
-        f"3. Slide the pose's jig ({jigs}) into its channel up to the end: each fits its own and no narrower one.",
-        "4. Lay the tool into both notches, its end against the stop; a rubber band around tool and spine holds it.",
-        "5. Press Enter: the grip closes. Take the band off and draw the jig straight back out of its channel.",
-    ]
-    return lines
-
-
 def _floor(
     spec: Spec, scenes: Iterable[PoseScene], assembly: Assembly, T: Array, flange: Flange
 ) -> float:
@@ -248,27 +204,3 @@ def _nowhere(pose: str, clearance: float) -> Finding:
     if np.isfinite(clearance):
         text = f"no jig: none keeps more than {clearance:.1f} mm from the hand, {CLEAR_MM:g} mm are needed"
     return Finding(GATE, Severity.WARNING, JIG + pose, clearance, CLEAR_MM, "mm", text)
-
-
-def _told(part: Part, gap: float, checks: Sequence[Finding]) -> list[Finding]:
-    """A part's findings; what would refuse a part of the hand is a warning here, and leaves a jig out."""
-    faults = errors(checks)
-    if faults:
-        first = faults[0]
-        text = f"left out: {first.text}" if part.name.startswith(JIG) else first.text
-        return [
-            Finding(GATE, Severity.WARNING, part.name, first.value, first.limit, first.unit, text)
-        ]
-    if not part.name.startswith(JIG):
-        return list(checks)
-    severity = Severity.FIGURE if gap >= LEAST_GAP_MM else Severity.WARNING
-    text = f"{gap:.2f} mm to the hand from open to closed grip, and while it is drawn away"
-    return [*checks, Finding(GATE, severity, part.name, gap, LEAST_GAP_MM, "mm", text)]
-
-
-def _meeting(part: Part, volume: float) -> list[Finding]:
-    """A warning where the stand and the hand share room."""
-    if volume <= INTERFERENCE_MM3:
-        return []
-    text = f"it shares {volume:.3g} mm^3 with the hand"
-    return [Finding(GATE, Severity.WARNING, part.name, volume, 0.0, "mm^3", text)]

@@ -10,6 +10,7 @@ from fpcad.make.parts.assembly import Assembly
 from fpcad.make.parts.dimensions import finger_dimensions
 from fpcad.make.parts.mounting import mounting
 from fpcad.make.stand import stand as stands
+from fpcad.make.stand.gates import GATE
 from fpcad.make.stand.jig import jig_solid
 from fpcad.make.stand.jig_place import JigPlace
 from tests.make.hands import CENTRE, CLAY, geometry_of
@@ -45,7 +46,7 @@ def test_a_jig_that_cannot_be_modelled_is_left_out_with_a_warning(monkeypatch):
     geometry = geometry_of(CENTRE)
     base = mounting(CLAY, geometry, finger_dimensions(CLAY, geometry)).T_palm_base
     stand = stands.make_stand(CLAY, geometry, Assembly((), ()), base, {"nod": nod()})
-    (told,) = [f for f in stand.findings if f.gate == stands.GATE]
+    (told,) = [f for f in stand.findings if f.gate == GATE]
     assert told.severity is Severity.WARNING and told.part == "jig_nod"
     assert "left out: part jig_nod" in told.text and "2 bodies" in told.text
     assert stand.jigs == {} and stand.bench

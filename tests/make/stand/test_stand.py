@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from fpcad.make.documents.inventory import read_inventory
+from fpcad.make.documents.stand_file import read_stand
 from fpcad.make.gates.finding import Severity
 from fpcad.make.gates.meetings import tool_mesh
 from fpcad.make.mesh import INTERFERENCE_MM3, manifold_of
 from fpcad.make.parts.assembly import Assembly
 from fpcad.make.parts.dimensions import finger_dimensions
 from fpcad.make.parts.mounting import mounting
+from fpcad.make.stand.gates import GATE
 from fpcad.make.stand.jig import rib_width
 from fpcad.make.stand.jig_place import AWAY_MM, CLEAR_MM, find_place
 from fpcad.make.stand.scene import OPENED_DEG, opened, stand_frame
-from fpcad.make.stand.stand import Stand, bench_steps, make_stand, stand_rows
+from fpcad.make.stand.stand import Stand, check_stand, make_stand
+from fpcad.make.stand.steps import bench_steps, stand_rows
 from fpcad.make.trajectory_file import read_trajectory
 from fpcad.pipeline.finished import finished_hand
 from fpcad.store import read_json
@@ -134,3 +140,33 @@ def test_a_build_has_the_stand_and_tells_how_to_use_it(built_clay, stand):
     assert "stand_screw,bought,4,M6" in bill and len(stand_rows(CLAY)) == 2
     assert len(bench_steps(stand)) == 5
     assert read_json(parts / "assembly.json")["about"]
+
+
+@pytest.fixture(scope="module")
+def filed(build, built_clay):
+    """Assembly and stand as a build's files tell them."""
+    spec, geometry, trajectories = build
+    parts = built_clay / "parts"
+    return read_inventory(parts), read_stand(spec, geometry, trajectories, parts)
+
+
+def test_the_files_of_stand_and_jigs_pass_their_gates_again(built_clay, build, filed):
+    assembly, stand = filed
+    rows = list(csv.DictReader((built_clay / "parts" / "checks.csv").open(encoding="utf-8")))
+    told = {(row["gate"], row["part"]): float(row["value"]) for row in rows}
+    found = check_stand(build[0], build[1], assembly, stand)
+    assert {f.part for f in found} == {part.name for part in stand.parts}
+    for finding in found:
+        value = told[finding.gate, finding.part]
+        assert finding.value == pytest.approx(value, rel=0.02, abs=0.02), str(finding)
+
+
+def test_a_jig_that_was_moved_into_the_hand_is_found(build, filed):
+    spec, geometry, _ = build
+    assembly, stand = filed
+    pose, jig = next(iter(stand.jigs.items()))
+    inwards = jig.mesh.copy().apply_translation(-15.0 * stand.away[pose])
+    moved_in = replace(stand, parts=(replace(jig, mesh=inwards),))
+    (fault,) = [f for f in check_stand(spec, geometry, assembly, moved_in) if f.gate == GATE]
+    assert fault.severity is Severity.WARNING and fault.part == f"jig_{pose}"
+    assert fault.value < fault.limit
