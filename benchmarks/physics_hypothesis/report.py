@@ -16,6 +16,7 @@ from benchmarks.physics_hypothesis.scores import (
     scores,
 )
 from benchmarks.physics_hypothesis.summary import IN_SHORT, in_short
+from fpcad.simulate.measure import TIPPED_DEG
 
 OF_GRIP = ("slip_margin_n", "cone_share", "motor_share", "least_stiffness_n_mm", "tip_force_n")
 """Margins of the preload, for comparison."""
@@ -35,15 +36,17 @@ def page(results: Sequence[Result], about: str) -> str:
         f"{faults} of them have a pose for which no trajectory or no grip could be made, which counts "
         "as not held.",
         _table(
-            ["load", "pose", "held to the end", "reached 50 %", "reached 90 %", "median share"],
+            ["load", "pose", "held to the end", "never tipped", "reached 50 %", "reached 90 %", "median share"],
             [_row(results, load, pose) for load in loads for pose in [*poses, "all"]],
         ),
+        "`never tipped`: held to the end, the tool's axis never "
+        f"{TIPPED_DEG:g} degrees or more out of its planned motion. "
         "`reached` counts hands that held the tool to the end *and* passed that share of their planned "
-        "range; the median is over all hands, what a hand turned before it lost the tool included. "
-        "`all` asks it of every pose of a hand. In brackets: 95 % intervals (Wilson).",
+        "range before it tipped; the median is over all hands, what a hand turned before it lost the tool "
+        "included. `all` asks it of every pose of a hand. In brackets: 95 % intervals (Wilson).",
         "## Which figure predicts it?",
         "Spearman's rank correlation over hands between a figure of the path and the share of the "
-        "planned range that was reached while the tool was held (0 where it was lost). `metric`: what "
+        "planned range that was reached before the tool tipped (0 where it was lost). `metric`: what "
         "the search knows; `grip`: margins of the preload.",
         _table(
             ["figure", *[f"{pose}, {load}" for load in loads[:3] for pose in poses]],
@@ -58,7 +61,7 @@ def page(results: Sequence[Result], about: str) -> str:
 
 
 def _row(results: Sequence[Result], load: str, pose: str) -> list[str]:
-    median = float(np.median([share for _, share in scores(results, load, pose)]))
+    median = float(np.median([score.share for score in scores(results, load, pose)]))
     counts = [_share(count, len(results)) for count in reached_counts(results, load, pose)]
     return [load, pose, *counts, f"{median:.2f}"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.stats import rankdata
@@ -40,20 +40,31 @@ def loads_of(results: Sequence[Result]) -> list[str]:
     )
 
 
-def scores(results: Iterable[Result], load: str, pose: str) -> list[tuple[bool, float]]:
-    """Whether each hand held, and its share of the planned range; the worst pose for `all`."""
+class Score(NamedTuple):
+    """What one hand did."""
+
+    held: bool
+    wielded: bool
+    """Held to the end, and never tipped."""
+    share: float
+    """Of the planned range, passed before the tool tipped or was lost."""
+
+
+def scores(results: Iterable[Result], load: str, pose: str) -> list[Score]:
+    """What each hand did; the worst pose for `all`."""
     found = []
     for result in results:
         names = [*result["poses"], *result["faults"]] if pose == "all" else [pose]
         each = [_score(result, load, name) for name in names]
-        found.append((all(held for held, _ in each), min(share for _, share in each)))
+        found.append(Score(*(min(column) for column in zip(*each, strict=True))))
     return found
 
 
 def reached_counts(results: Sequence[Result], load: str, pose: str) -> tuple[int, ...]:
-    """How many hands hold the tool to the end, and of these pass each of `SHARES`."""
+    """How many hands hold the tool to the end, never tip it, and of those that hold it pass each of `SHARES`."""
     each = scores(results, load, pose)
-    return tuple(sum(held and share >= least for held, share in each) for least in (0.0, *SHARES))
+    passed = (sum(one.held and one.share >= least for one in each) for least in SHARES)
+    return sum(one.held for one in each), sum(one.wielded for one in each), *passed
 
 
 def rank_correlation(
@@ -61,17 +72,16 @@ def rank_correlation(
 ) -> float | None:
     """Spearman's, of a figure and the share that was reached while held; None without variety."""
     there = [result for result in results if pose in result["poses"]]
-    reached = [
-        share if held else 0.0 for held, share in (_score(result, load, pose) for result in there)
-    ]
+    reached = [score.share if score.held else 0.0 for score in scores(there, load, pose)]
     figures = [result["poses"][pose][kind][name] for result in there]
     if len(set(reached)) < 2 or len(set(figures)) < 2:
         return None
     return float(np.corrcoef(rankdata(figures), rankdata(reached))[0, 1])
 
 
-def _score(result: Result, load: str, pose: str) -> tuple[bool, float]:
+def _score(result: Result, load: str, pose: str) -> Score:
     if pose not in result["poses"]:
-        return False, 0.0
+        return Score(False, False, 0.0)
     told = result["poses"][pose]["trials"][load]
-    return told["held"], told["reached_deg"] / told["planned_deg"]
+    wielded = told["held"] and told["tipped_at_s"] is None
+    return Score(told["held"], wielded, told["reached_deg"] / told["planned_deg"])

@@ -12,6 +12,7 @@ from benchmarks.physics_hypothesis.scores import (
     rank_correlation,
     reached_counts,
 )
+from fpcad.simulate.measure import TIPPED_DEG
 
 IN_SHORT = "## In short"
 IN_RESULTS = "## In physics"
@@ -26,18 +27,19 @@ def in_short(results: Sequence[Result]) -> str:
     """Two lists: hands by load, and for each pose the metric that orders hands most like physics."""
     lines = [
         f"Of {len(results)} hands whose kinematic tool motion range is greater than zero in all poses, keep "
-        "hold of the tool in all poses and pass half, and nine tenths, of the planned range in all of them:",
+        f"hold of the tool in all poses, never let it tip by {TIPPED_DEG:g} degrees out of its planned motion, "
+        "and hold it and pass half, and nine tenths, of the planned range before it tips, in all of them:",
         "\n".join(_by_load(results, load) for load in loads_of(results)),
-        "The metric of the search whose rank correlation with the range that is reached while the tool is "
-        "held is largest:",
+        "The metric of the search whose rank correlation with the range that is reached before the tool "
+        "tips is largest:",
         "\n".join(_best_metric(results, load) for load in loads_of(results)[:3]),
     ]
     return "\n\n".join(lines)
 
 
 def _by_load(results: Sequence[Result], load: str) -> str:
-    held, half, most = reached_counts(results, load, "all")
-    return f"- {load}: {held} hold, {half} pass half, {most} nine tenths"
+    held, wielded, half, most = reached_counts(results, load, "all")
+    return f"- {load}: {held} hold, {wielded} never tip, {half} pass half, {most} nine tenths"
 
 
 def _best_metric(results: Sequence[Result], load: str) -> str:

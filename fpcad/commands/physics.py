@@ -70,7 +70,9 @@ def _print_trials(tried: list[Tried]) -> None:
     table = Table("trial", "held", "turned, planned [deg]", "tilt [deg]", "slip [mm]", "at limit")
     for one in tried:
         told = one.outcome
-        held = "yes" if told.held else f"lost at {told.lost_at_s:.1f} s"
+        tipped = "" if told.tipped_at_s is None else f"tips at {told.tipped_at_s:.1f} s"
+        lost = "" if told.held else f"lost at {told.lost_at_s:.1f} s"
+        held = ", ".join(filter(None, (tipped, lost))) or "yes"
         slip = ", ".join(f"{way:.0f}" for way in told.slip_mm)
         turned = f"{told.reached_deg:.0f}, {told.planned_deg:.0f}"
         tilt, limit = f"{told.worst_tilt_deg:.0f}", f"{told.saturated_share:.0%}"

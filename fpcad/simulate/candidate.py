@@ -44,8 +44,8 @@ def held_shares(
         paths: the hand's path in each pose.
 
     Returns:
-        For each pose and each of `TRIALS`, the share [-] of the planned range that is reached by a
-        hand that keeps hold of the tool to the end; 0 where it drops it or could not be tried.
+        For each pose and each of `TRIALS`, the share [-] of the planned range that the tool passes
+        before it tips in a hand that keeps hold of it to the end; 0 where the hand drops it or could not be tried.
     """
     spec, geometry = bench.spec, hand_geometry(bench.template, design)
     made, faults = trajectories(bench, design, geometry, paths)

@@ -1,4 +1,4 @@
-"""What a trial shows: how far the tool was turned, whether it was held, what slid and saturated."""
+"""What a trial shows: how far the tool was turned, whether it was held and led, what slid and saturated."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 SATURATED = 0.999
 """Share of a motor's limit from which it counts as saturated."""
+TIPPED_DEG = 30.0
+"""Tilt of the tool's axis out of its planned motion from which it is no longer wielded, though it may be held."""
 ALONG_AXIS = 0.9
 """Cosine between tool and turning axis from which turning is spinning the tool about itself."""
 
@@ -30,10 +32,12 @@ class Outcome:
     """Whether the tool was in the hand to the end."""
     lost_at_s: float | None
     """Time on the trajectory at which it was lost."""
+    tipped_at_s: float | None
+    """Time at which it was first tilted by `TIPPED_DEG`; None where it never was."""
     planned_deg: float
     """Range of the tool's angle that the trajectory plans."""
     reached_deg: float
-    """Part of that range that the tool passed while it was held."""
+    """Part of that range that the tool passed while it was held and before it tipped."""
     worst_tilt_deg: float
     """Largest tilt of the tool's axis out of its planned motion."""
     worst_offset_mm: float
@@ -45,6 +49,11 @@ class Outcome:
     saturated_share: float
     """Share of the time in which at least one motor was at its limit."""
     largest_motor_nm: float
+
+    @property
+    def wielded(self) -> bool:
+        """Whether the tool was held to the end and never tipped."""
+        return self.held and self.tipped_at_s is None
 
     @property
     def reached_share(self) -> float:
@@ -59,6 +68,8 @@ def outcome(record: Record, trajectory: Trajectory, turning: Turning, limit_nm: 
     turned, tilt = tool_angles(record, trajectory, turning)
     plan = trajectory.tool.angle_rad
     low, high = plan.min(), plan.max()
+    tipped = np.flatnonzero(np.abs(tilt) * DEG_PER_RAD >= TIPPED_DEG)
+    moving[tipped[0] if len(tipped) else len(moving) :] = False
     seen = turned[moving] if moving.any() else np.zeros(1)
     reached = max(0.0, min(seen.max(), high)) - min(0.0, max(seen.min(), low))
     offset = np.linalg.norm(record.tool_pose[:, :3] - record.planned_position_m, axis=1)
@@ -66,6 +77,7 @@ def outcome(record: Record, trajectory: Trajectory, turning: Turning, limit_nm: 
     return Outcome(
         held=held,
         lost_at_s=None if held else float(record.time_s[-1]),
+        tipped_at_s=float(record.time_s[tipped[0]]) if len(tipped) else None,
         planned_deg=float(high - low) * DEG_PER_RAD,
         reached_deg=float(reached) * DEG_PER_RAD,
         worst_tilt_deg=float(np.abs(tilt).max()) * DEG_PER_RAD,

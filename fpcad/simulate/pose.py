@@ -61,7 +61,8 @@ def report_of(tried: list[Tried]) -> dict[str, Any]:
     return {
         one.name: {
             "trial": asdict(one.trial),
-            "outcome": asdict(one.outcome) | {"reached_share": one.outcome.reached_share},
+            "outcome": asdict(one.outcome)
+            | {"reached_share": one.outcome.reached_share, "wielded": one.outcome.wielded},
         }
         for one in tried
     }

@@ -7,8 +7,15 @@ from benchmarks.physics_hypothesis.scores import KINEMATIC
 from benchmarks.physics_hypothesis.summary import with_physics
 
 
-def result(number: int, share: float, held: bool = True, faults: dict[str, str] | None = None):
+def result(
+    number: int,
+    share: float,
+    held: bool = True,
+    faults: dict[str, str] | None = None,
+    tipped_at_s: float | None = None,
+):
     trial = {"held": held, "reached_deg": 50.0 * share, "planned_deg": 50.0}
+    trial |= {"tipped_at_s": tipped_at_s}
     metrics = {name: float(number) for name in KINEMATIC}
     margins = dict.fromkeys(OF_GRIP, 1.0)
     pose = {"metrics": metrics, "margins": margins, "trials": {"unloaded": trial}}
@@ -16,10 +23,11 @@ def result(number: int, share: float, held: bool = True, faults: dict[str, str] 
 
 
 def test_hands_are_counted_by_load_and_share():
-    text = page([result(1, 0.4), result(2, 0.6), result(3, 0.95), result(4, 0.99, held=False)], "x")
+    hands = [result(1, 0.4), result(2, 0.6, tipped_at_s=1.0), result(3, 0.95)]
+    text = page([*hands, result(4, 0.99, held=False)], "x")
     row = next(line for line in text.splitlines() if line.startswith("| unloaded | a |"))
-    counts = [cell.split(")")[0].split("(")[1] for cell in row.split("|")[3:6]]
-    assert counts == ["3", "2", "1"]
+    counts = [cell.split(")")[0].split("(")[1] for cell in row.split("|")[3:7]]
+    assert counts == ["3", "2", "2", "1"]
 
 
 def test_a_pose_without_trajectory_counts_as_not_held():
@@ -39,5 +47,5 @@ def test_the_summary_goes_to_the_results():
     results = [result(n, 0.2 * n) for n in range(1, 6)]
     document = with_physics("# Results\n\n## In physics\n\nolder\n", page(results, "x"))
     assert document.startswith("# Results\n\n## In physics\n\nWhether hands")
-    assert "- unloaded: 5 hold, 3 pass half, 1 nine tenths\n" in document
+    assert "- unloaded: 5 hold, 5 never tip, 3 pass half, 1 nine tenths\n" in document
     assert document.endswith("- unloaded: a `tmr_deg` +1.00\n")

@@ -119,6 +119,26 @@ def test_the_skin_is_as_stiff_as_the_spec_says(grip: Gripping, record: Record):
             assert force[0] == pytest.approx(-contact.dist * 30_000.0, rel=0.03)
 
 
+def test_what_the_tool_turns_after_it_tipped_does_not_count(grip: Gripping, record: Record):
+    """It turns by 0.1 rad in every tick and from the fourth on it lies 40 degrees askew."""
+    start = Rotation.from_quat(grip.trajectory.tool.pose_palm[0, 3:], scalar_first=True)
+    ticks = np.arange(1, 7)
+    tilt = np.radians(np.where(ticks < 4, 5.0, 40.0))
+    poses = np.tile(record.tool_pose[-1], (6, 1))
+    turned = Rotation.from_euler("ZY", np.column_stack([0.1 * ticks, tilt]))
+    poses[:, 3:] = (start * turned).as_quat(scalar_first=True)
+    rows = {
+        name: getattr(record, name)[-6:]
+        for name in ("motor_nm", "normal_n", "slip_mm_s", "planned_position_m")
+    }
+    tool = replace(grip.trajectory.tool, angle_rad=np.array([-0.05, 0.5]))
+    planned = replace(grip.trajectory, tool=tool)
+    seen = replace(record, time_s=record.time_s[-6:], tool_pose=poses, **rows)
+    told = outcome(seen, planned, Z, 0.9)
+    assert told.held and not told.wielded and told.tipped_at_s == record.time_s[-3]
+    assert told.reached_deg == pytest.approx(np.degrees(0.3))
+
+
 def test_tool_angles_are_those_of_its_axis(grip: Gripping, record: Record):
     """A turn about z counts, a tilt is told apart, and spin of the round tool shows nothing."""
     start = Rotation.from_quat(grip.trajectory.tool.pose_palm[0, 3:], scalar_first=True)
