@@ -13,7 +13,7 @@ from fpcad.make.gates.bodies import Body
 from fpcad.make.gates.finding import Finding, Severity, errors
 from fpcad.make.mesh import INTERFERENCE_MM3
 from fpcad.make.parts.part import Part
-from fpcad.make.stand.clear import least_gap, shared_volume
+from fpcad.make.stand.clear import TOLD_MM, least_gap, shared_volume
 from fpcad.model.geometry import HandGeometry
 from fpcad.spec.schema import Spec
 
@@ -49,7 +49,8 @@ def check_jig(
         return [_warned(jig.name, faults[0], "left out: ")]
     gap = least_gap(jig.mesh, away, hand.bodies, hand.geometry, postures, hand.T_palm_stand)
     severity = Severity.FIGURE if gap >= LEAST_GAP_MM else Severity.WARNING
-    text = f"{gap:.2f} mm to the hand from open to closed grip, and while it is drawn away"
+    more = " or more" if gap >= TOLD_MM else ""
+    text = f"{gap:.2f} mm{more} to the hand from open to closed grip, and while it is drawn away"
     return [*checks, Finding(GATE, severity, jig.name, gap, LEAST_GAP_MM, "mm", text)]
 
 
