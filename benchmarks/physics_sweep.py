@@ -70,7 +70,7 @@ class FinishedHand:
         for pose, trajectory in trajectories.items():
             trials = [replace(changed, tip_force_n=force) for force in TIP_FORCES_N]
             records = [run_trial(hand, spec, pose, trajectory, trial) for trial in trials]
-            told = [_told(judge(spec, pose, trajectory, record)) for record in records]
+            told = [cell(judge(spec, pose, trajectory, record)) for record in records]
             cells.append(" / ".join(told))
         return cells
 
@@ -92,7 +92,8 @@ def sweep(hand: FinishedHand) -> Iterator[list[str]]:
         yield [f"tendons of {length:g} mm", *hand.row(softer, hand.gripping(softer))]
 
 
-def _told(outcome: Outcome) -> str:
+def cell(outcome: Outcome) -> str:
+    """The share, and what happened after it."""
     after = "" if outcome.tipped_at_s is None else " tips"
     return f"{outcome.reached_share:.2f}{after if outcome.held else ' lost'}"
 
