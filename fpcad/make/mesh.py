@@ -29,9 +29,11 @@ def mesh_of(name: str, solid: Solid, settings: Print) -> trimesh.Trimesh:
 
     Where the spec's tolerance loses more than VOLUME_LOSS, as on large spheres, it is halved.
     """
-    if not solid.isValid() or len(solid.Solids()) != 1:
-        bodies = len(solid.Solids())
-        raise MakeError(f"part {name}: a valid solid of one body is needed, not {bodies} bodies")
+    bodies = len(solid.Solids())
+    if bodies != 1:
+        raise MakeError(f"part {name}: a solid of one body is needed, not of {bodies} bodies")
+    if not solid.isValid():
+        raise MakeError(f"part {name}: the CAD kernel calls its solid not valid")
     tolerance, angle = settings.mesh_tolerance_mm, settings.mesh_angle_deg * RAD_PER_DEG
     volume = solid.Volume()
     for _ in range(MOST_HALVINGS):
