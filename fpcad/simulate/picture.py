@@ -64,7 +64,10 @@ def film(
 
 
 def curves(tried: Sequence[Tried], trajectory: Trajectory, turning: Turning, png: Path) -> Path:
-    """Write the tool's angle over time for each trial, and the first one's contact forces (PNG)."""
+    """Write the tool's angle over time for each trial, and the first one's contact forces (PNG).
+
+    A cross marks where a tool tips; what it turns after that is faint.
+    """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8, 7), layout="constrained")
@@ -73,8 +76,13 @@ def curves(tried: Sequence[Tried], trajectory: Trajectory, turning: Turning, png
     planned = first.planned_angle_rad * DEG_PER_RAD
     angle.plot(first.time_s, planned, "k--", lw=1, label="planned")
     for one in tried:
-        turned, _ = tool_angles(one.record, trajectory, turning)
-        angle.plot(one.record.time_s, turned * DEG_PER_RAD, lw=1, label=one.name)
+        turned = tool_angles(one.record, trajectory, turning)[0] * DEG_PER_RAD
+        time, tipped = one.record.time_s, one.outcome.tipped_at_s
+        led = time <= (np.inf if tipped is None else tipped)
+        (line,) = angle.plot(time[led], turned[led], lw=1, label=one.name)
+        angle.plot(time[~led], turned[~led], lw=1, alpha=0.3, color=line.get_color())
+        if tipped is not None:
+            angle.plot(time[led][-1], turned[led][-1], "x", color=line.get_color())
     angle.set_ylabel("turn of the tool [deg]")
     margin = 0.1 * (np.ptp(planned) + 1.0)
     angle.set_ylim(planned.min() - margin, planned.max() + margin)
