@@ -90,7 +90,7 @@ distclean: clean ## Remove .venv as well.
 $(INSTALLED): $(CREATED) $(PINS)
 	@echo "Installing fpcad's packages in $(VENV): about 2 GB, some minutes on the first run."
 	$(PIP_INSTALL) setuptools
-	$(INSTALL) .
+	$(INSTALL) '.[physics,pictures]'
 	@touch $@
 
 $(TESTABLE): $(CREATED) $(PINS)
