@@ -14,15 +14,13 @@ from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 
-import numpy as np
-
 from fpcad.make.gripping import gripping_trajectory
 from fpcad.make.trajectory import Trajectory
 from fpcad.model.geometry import hand_geometry
+from fpcad.pipeline.finished import chosen_design
 from fpcad.pipeline.paths import read_paths
 from fpcad.pipeline.select import SELECTED
 from fpcad.pipeline.stage import Build
-from fpcad.sample.space import design_space
 from fpcad.simulate.measure import Outcome
 from fpcad.simulate.scene import hand_spec
 from fpcad.simulate.setting import Trial
@@ -52,13 +50,12 @@ class FinishedHand:
 
     def gripping(self, spec: Spec) -> dict[str, Trajectory]:
         """Trajectories by pose along its paths, with the grip of another spec."""
-        chosen = read_json(self._folder / SELECTED)
-        space, bench = design_space(spec.hand), replace(self._build.bench, spec=spec)
-        design = space.internal(np.array([chosen["design"][name] for name in space.names]))
+        chosen = int(read_json(self._folder / SELECTED)["id"])
+        design, bench = chosen_design(spec, self._folder), replace(self._build.bench, spec=spec)
         geometry = hand_geometry(bench.template, design)
         return {
             pose: gripping_trajectory(bench, design, geometry, path)[0]
-            for pose, path in read_paths(self._build, int(chosen["id"])).items()
+            for pose, path in read_paths(self._build, chosen).items()
         }
 
     def row(

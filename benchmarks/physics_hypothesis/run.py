@@ -54,7 +54,7 @@ def try_hand(
             stepped = type(trial)(**{**asdict(trial), "time_step_s": time_step_s})
             record = run_trial(hand, bench.spec, pose, trajectory, stepped)
             told = judge(bench.spec, pose, trajectory, record)
-            trials[name] = {**asdict(told), "simulated_s": record.seconds}
+            trials[name] = told.as_values() | {"simulated_s": record.seconds}
         poses[pose] = {"metrics": metrics, "margins": asdict(margins), "trials": trials}
     seconds = time.perf_counter() - started
     return {"id": candidate.id, "poses": poses, "faults": faults, "seconds": seconds}

@@ -83,5 +83,4 @@ def _score(result: Result, load: str, pose: str) -> Score:
     if pose not in result["poses"]:
         return Score(False, False, 0.0)
     told = result["poses"][pose]["trials"][load]
-    wielded = told["held"] and told["tipped_at_s"] is None
-    return Score(told["held"], wielded, told["reached_deg"] / told["planned_deg"])
+    return Score(told["held"], told["wielded"], told["reached_share"])

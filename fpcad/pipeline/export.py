@@ -7,8 +7,6 @@ from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 from fpcad.errors import MakeError
 from fpcad.make.documents.stamp import Stamp
 from fpcad.make.gripping import gripping_trajectory
@@ -20,10 +18,10 @@ from fpcad.make.trajectory_file import write_trajectory
 from fpcad.model.geometry import HandGeometry, hand_geometry
 from fpcad.pipeline.apart import run_apart
 from fpcad.pipeline.evaluate import FILE as METRICS_FILE
+from fpcad.pipeline.finished import chosen_design
 from fpcad.pipeline.paths import drop_spare_paths, read_paths
 from fpcad.pipeline.select import METRICS, SELECTED, refuse
 from fpcad.pipeline.stage import Build, Counts, Stage
-from fpcad.sample.space import design_space
 from fpcad.spec.dump import spec_hash
 from fpcad.spec.schema import Spec
 from fpcad.store import json_text, read_json, read_table
@@ -65,12 +63,11 @@ def _refused(build: Build) -> int:
 
 def _export_chosen(build: Build) -> int:
     """Write the chosen hand's files and count them."""
-    space, selected = design_space(build.spec.hand), read_json(build.folder / SELECTED)
-    named = np.array([selected["design"][name] for name in space.names])
-    design = space.internal(named)
+    chosen = int(read_json(build.folder / SELECTED)["id"])
+    design = chosen_design(build.spec, build.folder)
     geometry = hand_geometry(build.bench.template, design)
-    stamp = Stamp(build.spec.name, int(selected["id"]), spec_hash(build.spec))
-    trajectories, margins, paths = {}, {}, read_paths(build, int(selected["id"]))
+    stamp = Stamp(build.spec.name, chosen, spec_hash(build.spec))
+    trajectories, margins, paths = {}, {}, read_paths(build, chosen)
     with build.reporter.stage("trajectories", len(build.spec.poses)) as bar:
         for path in paths.values():
             trajectory, margins[path.pose] = gripping_trajectory(
@@ -84,7 +81,7 @@ def _export_chosen(build: Build) -> int:
     )
     with build.reporter.stage("parts", PART_STEPS) as bar:
         progress = partial(bar.advance, 1)
-        order = build.spec, geometry, build.folder, trajectories, int(selected["id"])
+        order = build.spec, geometry, build.folder, trajectories, chosen
         files = run_apart(_make, order, CAD_LIMIT_S, progress)
     drop_others(files, *(build.folder / folder for folder in FOLDERS))
     with build.reporter.stage("errors of print and joints", None):

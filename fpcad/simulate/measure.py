@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +50,10 @@ class Outcome:
     saturated_share: float
     """Share of the time in which at least one motor was at its limit."""
     largest_motor_nm: float
+
+    def as_values(self) -> dict[str, Any]:
+        """All figures, what follows from them too, as plain values."""
+        return asdict(self) | {"wielded": self.wielded, "reached_share": self.reached_share}
 
     @property
     def wielded(self) -> bool:

@@ -59,12 +59,7 @@ def hold_pose(spec: Spec, build: Path, pose: str, tell: Progress) -> list[Hold]:
 def report_of(tried: list[Tried]) -> dict[str, Any]:
     """Trials and figures as plain values; equal runs give equal ones."""
     return {
-        one.name: {
-            "trial": asdict(one.trial),
-            "outcome": asdict(one.outcome)
-            | {"reached_share": one.outcome.reached_share, "wielded": one.outcome.wielded},
-        }
-        for one in tried
+        one.name: {"trial": asdict(one.trial), "outcome": one.outcome.as_values()} for one in tried
     }
 
 

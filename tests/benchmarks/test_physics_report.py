@@ -12,10 +12,9 @@ def result(
     share: float,
     held: bool = True,
     faults: dict[str, str] | None = None,
-    tipped_at_s: float | None = None,
+    tipped: bool = False,
 ):
-    trial = {"held": held, "reached_deg": 50.0 * share, "planned_deg": 50.0}
-    trial |= {"tipped_at_s": tipped_at_s}
+    trial = {"held": held, "wielded": held and not tipped, "reached_share": share}
     metrics = {name: float(number) for name in KINEMATIC}
     margins = dict.fromkeys(OF_GRIP, 1.0)
     pose = {"metrics": metrics, "margins": margins, "trials": {"unloaded": trial}}
@@ -23,7 +22,7 @@ def result(
 
 
 def test_hands_are_counted_by_load_and_share():
-    hands = [result(1, 0.4), result(2, 0.6, tipped_at_s=1.0), result(3, 0.95)]
+    hands = [result(1, 0.4), result(2, 0.6, tipped=True), result(3, 0.95)]
     text = page([*hands, result(4, 0.99, held=False)], "x")
     row = next(line for line in text.splitlines() if line.startswith("| unloaded | a |"))
     counts = [cell.split(")")[0].split("(")[1] for cell in row.split("|")[3:7]]

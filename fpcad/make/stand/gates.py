@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpcad.make.gates.all_gates import check_part
-from fpcad.make.gates.bodies import Body
 from fpcad.make.gates.finding import Finding, Severity, errors
 from fpcad.make.mesh import INTERFERENCE_MM3
 from fpcad.make.parts.part import Part
-from fpcad.make.stand.clear import TOLD_MM, least_gap, shared_volume
-from fpcad.model.geometry import HandGeometry
+from fpcad.make.stand.clear import TOLD_MM, BoltedHand, least_gap, shared_volume
 from fpcad.spec.schema import Spec
 
 Array = NDArray[np.float64]
@@ -22,15 +19,6 @@ Array = NDArray[np.float64]
 GATE = "jig"
 LEAST_GAP_MM = 0.5
 """What a jig must keep from the parts themselves, which lie within the capsules that it was placed by."""
-
-
-@dataclass(frozen=True)
-class BoltedHand:
-    """A hand where it is bolted to its stand."""
-
-    bodies: Sequence[Body]
-    geometry: HandGeometry
-    T_palm_stand: Array  # (4, 4) [mm]
 
 
 def check_jig(
@@ -47,7 +35,7 @@ def check_jig(
     faults = errors(checks)
     if faults:
         return [_warned(jig.name, faults[0], "left out: ")]
-    gap = least_gap(jig.mesh, away, hand.bodies, hand.geometry, postures, hand.T_palm_stand)
+    gap = least_gap(jig.mesh, away, postures, hand)
     severity = Severity.FIGURE if gap >= LEAST_GAP_MM else Severity.WARNING
     more = " or more" if gap >= TOLD_MM else ""
     text = f"{gap:.2f} mm{more} to the hand from open to closed grip, and while it is drawn away"
@@ -61,7 +49,7 @@ def check_bench(
     checks = check_part(spec, part)
     faults = errors(checks)
     found = [_warned(part.name, faults[0])] if faults else checks
-    volume = shared_volume(part.mesh, hand.bodies, hand.geometry, postures, hand.T_palm_stand)
+    volume = shared_volume(part.mesh, postures, hand)
     if volume > INTERFERENCE_MM3:
         text = f"it shares {volume:.3g} mm^3 with the hand"
         found.append(Finding(GATE, Severity.WARNING, part.name, volume, 0.0, "mm^3", text))

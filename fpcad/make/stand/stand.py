@@ -18,7 +18,8 @@ from fpcad.make.parts.catalogue import Flange, lookup
 from fpcad.make.parts.part import FIXED_LINK, Part
 from fpcad.make.parts.solids import Solid
 from fpcad.make.stand.bench import AROUND_MM, bench_solids
-from fpcad.make.stand.gates import GATE, BoltedHand, check_bench, check_jig, left_out
+from fpcad.make.stand.clear import BoltedHand
+from fpcad.make.stand.gates import GATE, check_bench, check_jig, left_out
 from fpcad.make.stand.jig import jig_solid
 from fpcad.make.stand.jig_place import CLEAR_MM, JigPlace, find_place
 from fpcad.make.stand.scene import PoseScene, moved, pose_scene, stand_frame
